@@ -1,0 +1,120 @@
+"""One running model: its record, its arrays, its messages, and all of them as bytes.
+
+The three models (driving function, vehicle, driver) derive from ``Instance``. The FMI binding, the
+co-simulation and the in-process study see nothing but this class.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import struct
+from dataclasses import asdict, dataclass, fields
+from typing import Any, Generic, Literal, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Level = Literal["info", "warning", "error"]
+RecordT = TypeVar("RecordT")
+
+
+class ModelError(ValueError):
+    """A parameter or a file cannot be used; the text says which, why and the way out."""
+
+
+@dataclass(frozen=True)
+class Message:
+    """Something the user of a model should know; never one per step."""
+
+    level: Level
+    text: str
+
+
+class Instance(Generic[RecordT]):
+    """A model that can be initialized, stepped, finished, saved and restored.
+
+    Attributes:
+        record: flat record of numbers, its class is the model's table of signals.
+        texts: record of String parameters (a dataclass instance without fields if there are none).
+        arrays: every float64 array that belongs to the state; set by ``initialize``.
+        messages: what the binding has not yet handed to the user.
+    """
+
+    def __init__(self, record: RecordT, texts: Any) -> None:
+        self.record = record
+        self.texts = texts
+        self.arrays: tuple[NDArray[np.float64], ...] = ()
+        self.messages: list[Message] = []
+
+    def initialize(self) -> None:
+        """Prepare arrays and outputs from the parameters; raise ModelError if they are unusable."""
+        raise NotImplementedError
+
+    def refresh(self) -> None:
+        """Recompute the outputs from the inputs without advancing (initialization, feedthrough)."""
+        raise NotImplementedError
+
+    def step(self, step_s: float) -> None:
+        """Advance by one communication step of ``step_s`` > 0 seconds."""
+        raise NotImplementedError
+
+    def finish(self) -> None:
+        """Do what the end of a drive asks for; called once, whatever way the drive ended."""
+
+    def attach(self, arrays: tuple[NDArray[np.float64], ...]) -> None:
+        """Make ``arrays`` the memory of this instance; models that give them names extend this."""
+        self.arrays = arrays
+
+    def snapshot(self) -> bytes:
+        """Return the whole state as bytes: layout digest, record, texts, array lengths, arrays."""
+        texts = json.dumps(asdict(self.texts)).encode()
+        lengths = [len(array) for array in self.arrays]
+        head = struct.pack(f"<32sqq{len(lengths)}q", self._layout(), len(texts), *_counted(lengths))
+        numbers = struct.pack(self._format(), *(getattr(self.record, n) for n in self._names()))
+        return b"".join((head, numbers, texts, *(array.tobytes() for array in self.arrays)))
+
+    def restore(self, state: bytes) -> None:
+        """Take over a state made by ``snapshot`` of the same model and build; else ModelError."""
+        if len(state) < _HEAD.size or state[:32] != self._layout():
+            raise ModelError("this FMU state belongs to another model or build; not restored")
+        _, text_size, count = _HEAD.unpack_from(state)
+        lengths = struct.unpack_from(f"<{count}q", state, _HEAD.size)
+        at = _HEAD.size + 8 * count
+        numbers = struct.unpack_from(self._format(), state, at)
+        at += struct.calcsize(self._format())
+        texts = json.loads(state[at : at + text_size])
+        at += text_size
+        if len(state) != at + 8 * sum(lengths):
+            raise ModelError("this FMU state is truncated; not restored")
+        for name, number in zip(self._names(), numbers, strict=True):
+            setattr(self.record, name, number)
+        for name, text in texts.items():
+            setattr(self.texts, name, text)
+        self.attach(_split(state, at, lengths))
+
+    def _names(self) -> tuple[str, ...]:
+        return tuple(f.name for f in fields(self.record))  # type: ignore[arg-type]
+
+    def _format(self) -> str:
+        kinds = ("q" if isinstance(f.default, int) else "d" for f in fields(self.record))  # type: ignore[arg-type]
+        return "<" + "".join(kinds)
+
+    def _layout(self) -> bytes:
+        text = f"{type(self).__qualname__} {self._format()} {self._names()}"
+        return hashlib.sha256(text.encode()).digest()
+
+
+_HEAD = struct.Struct("<32sqq")
+
+
+def _counted(lengths: list[int]) -> list[int]:
+    return [len(lengths), *lengths]
+
+
+def _split(state: bytes, offset: int, lengths: tuple[int, ...]) -> tuple[NDArray[np.float64], ...]:
+    arrays = []
+    for length in lengths:
+        arrays.append(np.frombuffer(state, np.float64, length, offset).copy())
+        offset += 8 * length
+    return tuple(arrays)

@@ -1,0 +1,72 @@
+"""The per-metre arrays of one instance, sized by the route when it is initialized.
+
+Node ``i`` lies at ``s = i`` metres, ``i = 0 .. n - 1``; cell ``i`` is the metre from node ``i`` to
+node ``i + 1`` (the last cell repeats its predecessor). Flags and numbers of drives are held as
+float64 too: one kind of array keeps the native build's memory a single block.
+
+In CPython the kernel gets ``memoryview`` objects over NumPy arrays (reading one element is three
+times faster and gives a Python float); compiled by numba it gets the NumPy arrays themselves.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+
+class Floats(Protocol):
+    """A mutable float64 vector: ``memoryview`` or ``numpy.ndarray``."""
+
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, index: int, /) -> float: ...
+
+    def __setitem__(self, index: int, value: float, /) -> None: ...
+
+
+class RouteArrays(NamedTuple):
+    """What the map says."""
+
+    limit_mps: Floats  # cell: lowest legal limit
+    curvature_per_m: Floats  # cell: largest absolute curvature
+    grade: Floats  # node: rise over run
+    x_m: Floats  # node: the route's line (all zero when the source has none)
+    y_m: Floats  # node
+
+
+class ProfileArrays(NamedTuple):
+    """What the function wants to drive; all speeds in m/s."""
+
+    base_mps: Floats  # node: planned from the legal limits alone
+    planned_mps: Floats  # node: planned from limits plus learned offsets
+    open_mps: Floats  # node: planned from curvature alone, for manual set speeds above the limit
+    learned_mps: Floats  # node: the profile that this drive follows
+    offset_mps: Floats  # cell: learned offset of the set speed from the limit
+    drive: Floats  # node: number of the drive that changed it last, 0 = never
+    intervention: Floats  # node: number of the intervention in that drive, 0 = set speed
+    limit_end_m: Floats  # node: position of the next change of the legal limit, else route end
+    turn_m: Floats  # node: position where the present or next acceleration phase ends
+
+
+class TraceArrays(NamedTuple):
+    """What happened in this drive, recorded by metre (see ``recorder``)."""
+
+    time_s: Floats  # node: time of first arrival
+    speed_mps: Floats  # node: recorded speed; the minimum where the car stood
+    usable: Floats  # node: 1 = may be learned, 0 = not driven, too slow or not eligible
+    gap: Floats  # node: 1 = interpolated over a hole in the recording
+    set_speed_mps: Floats  # node: manual set speed in force, 0 = none
+    start_m: Floats  # intervention k: position at which it began
+    end_m: Floats  # intervention k: position at which it ended
+
+
+class ScratchArrays(NamedTuple):
+    """Work space of planner and learning; ``next_*`` is what a finished drive leaves behind."""
+
+    next_learned_mps: Floats
+    next_offset_mps: Floats
+    next_drive: Floats
+    next_intervention: Floats
+    a: Floats
+    b: Floats
+    c: Floats
+    d: Floats

@@ -1,0 +1,75 @@
+"""Integer codes shared by kernel, FMI enumerations, recordings and the instrument cluster."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from .signals import Enumeration
+
+# Modes of the driving function (algorithm, section 2).
+OFF: Final = 0
+STANDBY: Final = 1
+ACTIVE: Final = 2
+GAS_OVERRIDE: Final = 3
+FAULT: Final = 4
+MODE: Final = Enumeration("Mode", ("OFF", "STANDBY", "ACTIVE", "GAS_OVERRIDE", "FAULT"))
+
+# What the function may learn from a drive.
+LEARN_OFF: Final = 0
+LEARN_FAITHFUL: Final = 1
+LEARN: Final = Enumeration("Learn", ("OFF", "FAITHFUL"))
+
+# Where the position comes from.
+ARC_LENGTH: Final = 0
+XY: Final = 1
+LOCALIZATION: Final = Enumeration("Localization", ("ARC_LENGTH", "XY"))
+
+# How far the stretching of an intervention may reach back.
+STRETCH_RECORDED: Final = 0
+STRETCH_CONSTANT_SPEED: Final = 1
+STRETCH: Final = Enumeration("Stretch", ("RECORDED", "CONSTANT_SPEED"))
+
+# Why the car drives at this speed.
+REASON_LIMIT: Final = 0
+REASON_CURVE: Final = 1
+REASON_COASTING_TO_LIMIT: Final = 2
+REASON_LEARNED_FASTER: Final = 3
+REASON_LEARNED_SLOWER: Final = 4
+REASON_LEARNED_OFFSET: Final = 5
+REASON_MANUAL_SET: Final = 6
+REASON_OVERRIDE: Final = 7
+REASON_CAP_CURVE: Final = 8
+REASON_CAP_LEGAL: Final = 9
+REASON_STANDBY: Final = 10
+REASON_FAULT: Final = 11
+REASON: Final = Enumeration(
+    "Reason",
+    (
+        "LIMIT",
+        "CURVE",
+        "COASTING_TO_LIMIT",
+        "LEARNED_FASTER",
+        "LEARNED_SLOWER",
+        "LEARNED_OFFSET",
+        "MANUAL_SET",
+        "OVERRIDE",
+        "CAP_CURVE",
+        "CAP_LEGAL",
+        "STANDBY",
+        "FAULT",
+    ),
+)
+
+# What became of the stored profile.
+PROFILE_BASE: Final = 0
+PROFILE_LOADED: Final = 1
+PROFILE_REFUSED: Final = 2
+PROFILE_NOT_PERSISTED: Final = 3
+PROFILE_STATUS: Final = Enumeration("ProfileStatus", ("BASE", "LOADED", "REFUSED", "NOT_PERSISTED"))
+
+# Why the position or an input was not accepted in the last step (0: it was).
+INPUT_OK: Final = 0
+INPUT_NOT_FINITE: Final = 1
+OFF_ROUTE: Final = 2
+POSITION_JUMP: Final = 3
+INPUT_STATE: Final = Enumeration("InputState", ("OK", "NOT_FINITE", "OFF_ROUTE", "POSITION_JUMP"))

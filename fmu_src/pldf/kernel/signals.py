@@ -1,0 +1,150 @@
+"""Field specifiers: one annotated class is a model's single table of signals.
+
+A model's record is a dataclass whose fields are made with the functions below. Its metadata is the
+single source of the Python field, the FMI variable, the recording column and the documentation::
+
+    @dataclass(slots=True)
+    class Ports:
+        vehicle_speed_mps: float = real_input("Ego speed", "m/s", start=0.0, low=0.0, high=100.0)
+
+The public name of a field that starts with one of ``GROUPS`` has a dot behind the group:
+``vehicle_speed_mps`` is ``vehicle.speed_mps``. Every other field keeps its name; a field that only
+looks grouped (``driver_id``) states its ``name``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import Field, dataclass, field, fields
+from typing import Any, Final, Literal
+
+Causality = Literal["parameter", "input", "output", "local"]
+Kind = Literal["Real", "Integer", "Boolean", "Enumeration", "String"]
+
+GROUPS: Final = (
+    "vehicle", "driver", "lever", "rate", "drive", "profile", "hmi",
+    "planner", "control", "learning", "wish", "script", "body",
+)  # fmt: skip
+
+_KEY: Final = "signal"
+
+
+@dataclass(frozen=True)
+class Enumeration:
+    """A named set of integer codes, 0, 1, 2 ... in the order of ``items``."""
+
+    name: str
+    items: tuple[str, ...]
+
+    def code(self, item: str) -> int:
+        """Return the code of ``item``; ValueError when it is not one of the items."""
+        return self.items.index(item)
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One variable of a model. ``field`` is the Python attribute, ``name`` the public name."""
+
+    field: str
+    name: str
+    causality: Causality
+    kind: Kind
+    start: float | int | bool | str
+    description: str
+    unit: str = ""
+    low: float | None = None
+    high: float | None = None
+    enumeration: Enumeration | None = None
+    tunable: bool = False
+
+
+def signals_of(record: type[Any] | Any) -> tuple[Signal, ...]:
+    """Return the signals of a record class (or instance) in order of definition."""
+    return tuple(_signal(f) for f in fields(record) if _KEY in f.metadata)
+
+
+def _signal(spec: Field[Any]) -> Signal:
+    details = dict(spec.metadata[_KEY])
+    details["name"] = details["name"] or _public_name(spec.name)
+    return Signal(field=spec.name, start=spec.default, **details)
+
+
+def _public_name(field_name: str) -> str:
+    group, _, rest = field_name.partition("_")
+    return f"{group}.{rest}" if group in GROUPS and rest else field_name
+
+
+def _spec(causality: Causality, kind: Kind, start: object, description: str, **more: object) -> Any:
+    details: dict[str, object] = {"name": "", **more}
+    details.update(causality=causality, kind=kind, description=description)
+    return field(default=start, metadata={_KEY: details})
+
+
+def real_parameter(
+    description: str, unit: str, *, start: float, low: float, high: float, name: str = ""
+) -> Any:
+    """Real parameter, fixed during a drive. ``unit`` is ``""`` for a pure number."""
+    return _spec("parameter", "Real", start, description, unit=unit, low=low, high=high, name=name)
+
+
+def real_input(
+    description: str, unit: str, *, start: float, low: float, high: float, name: str = ""
+) -> Any:
+    """Real input, sampled once per communication step."""
+    return _spec("input", "Real", start, description, unit=unit, low=low, high=high, name=name)
+
+
+def real_output(
+    description: str,
+    unit: str,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    name: str = "",
+) -> Any:
+    """Real output."""
+    return _spec("output", "Real", 0.0, description, unit=unit, low=low, high=high, name=name)
+
+
+def flag_parameter(description: str, *, start: bool, name: str = "") -> Any:
+    """Boolean parameter, held as int 0 or 1 so that the record stays flat."""
+    return _spec("parameter", "Boolean", int(start), description, name=name)
+
+
+def flag_input(description: str, *, start: bool, name: str = "") -> Any:
+    """Boolean input, held as int 0 or 1."""
+    return _spec("input", "Boolean", int(start), description, name=name)
+
+
+def flag_output(description: str, *, name: str = "") -> Any:
+    """Boolean output, held as int 0 or 1."""
+    return _spec("output", "Boolean", 0, description, name=name)
+
+
+def count_parameter(description: str, *, start: int, low: int, high: int, name: str = "") -> Any:
+    """Integer parameter, fixed during a drive."""
+    return _spec("parameter", "Integer", start, description, low=low, high=high, name=name)
+
+
+def count_output(description: str, *, name: str = "") -> Any:
+    """Integer output."""
+    return _spec("output", "Integer", 0, description, name=name)
+
+
+def choice_parameter(description: str, choices: Enumeration, *, start: int, name: str = "") -> Any:
+    """Enumeration parameter; the field holds the item's code."""
+    return _spec("parameter", "Enumeration", start, description, enumeration=choices, name=name)
+
+
+def choice_input(description: str, choices: Enumeration, *, start: int, name: str = "") -> Any:
+    """Enumeration input; the field holds the item's code."""
+    return _spec("input", "Enumeration", start, description, enumeration=choices, name=name)
+
+
+def choice_output(description: str, choices: Enumeration, *, name: str = "") -> Any:
+    """Enumeration output; the field holds the item's code."""
+    return _spec("output", "Enumeration", 0, description, enumeration=choices, name=name)
+
+
+def text_parameter(description: str, *, name: str = "") -> Any:
+    """String parameter, empty by default: everything works with none of them set."""
+    return _spec("parameter", "String", "", description, name=name)

@@ -1,0 +1,113 @@
+"""The state of the driving function: parameters, inputs, outputs and memory in one flat record."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .codes import MODE, PROFILE_STATUS, REASON
+from .parameters import Parameters
+from .signals import (
+    choice_output,
+    count_output,
+    flag_input,
+    flag_output,
+    real_input,
+    real_output,
+)
+
+
+@dataclass(slots=True)
+class Inputs(Parameters):
+    """What the simulator delivers, constant over a communication step."""
+
+    vehicle_s_m: float = real_input(
+        "Arc length along the route", "m", start=0.0, low=-1e7, high=1e7
+    )
+    vehicle_x_m: float = real_input(
+        "East coordinate, used when localization is XY", "m", start=0.0, low=-1e7, high=1e7
+    )
+    vehicle_y_m: float = real_input(
+        "North coordinate, used when localization is XY", "m", start=0.0, low=-1e7, high=1e7
+    )
+    vehicle_speed_mps: float = real_input("Ego speed", "m/s", start=0.0, low=-10.0, high=150.0)
+    vehicle_acceleration_mps2: float = real_input(
+        "Ego acceleration", "m/s2", start=0.0, low=-50.0, high=50.0
+    )
+    driver_gas_pedal: float = real_input("Gas pedal travel", "", start=0.0, low=0.0, high=1.0)
+    driver_brake_pedal: float = real_input("Brake pedal travel", "", start=0.0, low=0.0, high=1.0)
+    lever_resume: int = flag_input("Lever: activate or resume", start=False)
+    lever_cancel: int = flag_input("Lever: cancel", start=False)
+    lever_up: int = flag_input("Lever: set speed up, short tip", start=False)
+    lever_down: int = flag_input("Lever: set speed down, short tip", start=False)
+    lever_up_long: int = flag_input("Lever: set speed up, long tip", start=False)
+    lever_down_long: int = flag_input("Lever: set speed down, long tip", start=False)
+    eligible: int = flag_input("Learning is allowed here (free driving)", start=True)
+
+
+@dataclass(slots=True)
+class Outputs(Inputs):
+    """What the function tells vehicle, driver and researcher."""
+
+    acceleration_request_mps2: float = real_output(
+        "Requested acceleration", "m/s2", low=-10.0, high=5.0
+    )
+    mode: int = choice_output("Mode of the function", MODE)
+    target_speed_mps: float = real_output("Speed the function aims at here", "m/s")
+    base_speed_mps: float = real_output("Base profile here", "m/s")
+    set_speed_mps: float = real_output("Set speed in force", "m/s")
+    set_speed_offset_mps: float = real_output(
+        "Offset that the driver set in this drive, 0 = none", "m/s"
+    )
+    limit_mps: float = real_output("Legal limit here", "m/s")
+    rate_pedal: float = real_output("Share of this drive with a pedal intervention", "")
+    rate_set_speed: float = real_output("Share of this drive with a set-speed offset", "")
+    rate_combined: float = real_output("Share of this drive with either", "")
+    drive_interventions: int = count_output("Pedal interventions in this drive")
+    profile_iteration: int = count_output("Number of drives learned so far")
+    profile_status: int = choice_output("What became of the stored profile", PROFILE_STATUS)
+    hmi_reason: int = choice_output("Why the car drives at this speed", REASON)
+    hmi_learned_delta_mps: float = real_output("Learned minus base speed here", "m/s")
+    hmi_next_speed_mps: float = real_output("Next speed that the profile settles at", "m/s")
+    hmi_next_distance_m: float = real_output("Distance to that speed", "m")
+    hmi_learning: int = flag_output("This drive is being learned from")
+
+
+@dataclass(slots=True)
+class PldfState(Outputs):
+    """Everything of one instance but the per-metre arrays.
+
+    Below the signals: what the function remembers from step to step. Times are whole nanoseconds.
+    """
+
+    time_ns: int = 0
+    s_m: float = 0.0
+    localized: int = 0
+    input_state: int = 0
+    valid_ns: int = 0
+    gas_was_pressed: int = 0
+    brake_was_pressed: int = 0
+    lever_was: int = 0
+    manual_set_mps: float = 0.0  # 0 = none
+    manual_end_m: float = 0.0
+    # recorder: the last two knots of the resampled drive and the sample before this one
+    samples: int = 0
+    knot_s_m: float = 0.0
+    knot_speed_mps: float = 0.0
+    knot_time_s: float = 0.0
+    previous_s_m: float = 0.0
+    previous_speed_mps: float = 0.0
+    previous_time_s: float = 0.0
+    previous_ns: int = 0
+    previous_mode: int = 0
+    previous_brake: int = 0
+    previous_offset: int = 0
+    intervening: int = 0
+    interventions: int = 0
+    intervention_end_ns: int = -1
+    gap_uncovered_ns: int = 0
+    truncated: int = 0
+    # rates
+    total_ns: int = 0
+    pedal_ns: int = 0
+    set_speed_ns: int = 0
+    combined_ns: int = 0

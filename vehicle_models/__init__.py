@@ -1,0 +1,1 @@
+"""Vehicle and driver models that close the loop around the driving function."""
