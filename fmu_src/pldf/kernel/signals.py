@@ -15,7 +15,7 @@ looks grouped (``driver_id``) states its ``name``.
 from __future__ import annotations
 
 from dataclasses import Field, dataclass, field, fields
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, cast
 
 Causality = Literal["parameter", "input", "output", "local"]
 Kind = Literal["Real", "Integer", "Boolean", "Enumeration", "String"]
@@ -65,7 +65,7 @@ def signals_of(record: type[Any] | Any) -> tuple[Signal, ...]:
 def _signal(spec: Field[Any]) -> Signal:
     details = dict(spec.metadata[_KEY])
     details["name"] = details["name"] or _public_name(spec.name)
-    return Signal(field=spec.name, start=spec.default, **details)
+    return Signal(field=spec.name, start=cast(float, spec.default), **details)
 
 
 def _public_name(field_name: str) -> str:

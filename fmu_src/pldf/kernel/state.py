@@ -51,6 +51,9 @@ class Outputs(Inputs):
     acceleration_request_mps2: float = real_output(
         "Requested acceleration", "m/s2", low=-10.0, high=5.0
     )
+    function_active: int = flag_output(
+        "The vehicle shall follow the request (ACTIVE, GAS_OVERRIDE)"
+    )
     mode: int = choice_output("Mode of the function", MODE)
     target_speed_mps: float = real_output("Speed the function aims at here", "m/s")
     base_speed_mps: float = real_output("Base profile here", "m/s")

@@ -1,0 +1,1 @@
+"""One module per command of ``pldf``: ``SUMMARY``, ``EXAMPLE``, ``configure`` and ``run``."""
