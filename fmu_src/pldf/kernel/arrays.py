@@ -59,14 +59,20 @@ class TraceArrays(NamedTuple):
     end_m: Floats  # intervention k: position at which it ended
 
 
-class ScratchArrays(NamedTuple):
-    """Work space of planner and learning; ``next_*`` is what a finished drive leaves behind."""
+class Work(NamedTuple):
+    """Scratch space of planner and learning, one value per node each."""
 
-    next_learned_mps: Floats
-    next_offset_mps: Floats
-    next_drive: Floats
-    next_intervention: Floats
     a: Floats
     b: Floats
     c: Floats
     d: Floats
+
+
+class NextArrays(NamedTuple):
+    """What a finished drive leaves for the next one; the meaning is that of ``ProfileArrays``."""
+
+    planned_mps: Floats
+    learned_mps: Floats
+    offset_mps: Floats
+    drive: Floats
+    intervention: Floats
