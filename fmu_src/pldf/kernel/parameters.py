@@ -101,6 +101,13 @@ class ControlParameters(PlannerParameters):
     control_set_speed_max_mps: float = real_parameter(
         "Highest manual set speed", "m/s", start=180.0 * KMH, low=1.0, high=100.0
     )
+    control_lever_bounce_s: float = real_parameter(
+        "Lever contacts that close this soon after another are chatter",
+        "s",
+        start=0.05,
+        low=0.0,
+        high=1.0,
+    )
     control_route_tolerance_m: float = real_parameter(
         "Distance from the route's line beyond which the function is inactive",
         "m", start=7.0, low=0.5, high=100.0,

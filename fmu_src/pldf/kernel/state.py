@@ -84,32 +84,32 @@ class PldfState(Outputs):
 
     time_ns: int = 0
     s_m: float = 0.0
+    ahead_m: float = 0.0  # travel from the last sample to the end of the step
     localized: int = 0
     input_state: int = 0
-    valid_ns: int = 0
-    gas_was_pressed: int = 0
-    brake_was_pressed: int = 0
+    valid_ns: int = 0  # when the inputs were last valid
+    invalid_ns: int = 0  # when they were last not
     lever_was: int = 0
+    lever_free_ns: int = 0
     manual_set_mps: float = 0.0  # 0 = none
     manual_end_m: float = 0.0
-    # recorder: the last two knots of the resampled drive and the sample before this one
+    # recorder: the last two knots of the resampled drive, and the sample before this one
     samples: int = 0
+    from_s_m: float = 0.0
+    from_speed_mps: float = 0.0
+    from_time_s: float = 0.0
     knot_s_m: float = 0.0
     knot_speed_mps: float = 0.0
     knot_time_s: float = 0.0
+    previous_ns: int = 0
     previous_s_m: float = 0.0
     previous_speed_mps: float = 0.0
-    previous_time_s: float = 0.0
-    previous_ns: int = 0
     previous_mode: int = 0
     previous_brake: int = 0
-    previous_offset: int = 0
+    previous_set_mps: float = 0.0
     intervening: int = 0
-    interventions: int = 0
     intervention_end_ns: int = -1
     gap_uncovered_ns: int = 0
-    truncated: int = 0
-    # rates
     total_ns: int = 0
     pedal_ns: int = 0
     set_speed_ns: int = 0

@@ -1,0 +1,130 @@
+"""One communication step of the driving function: sample -> record -> mode -> request -> outputs."""
+
+from __future__ import annotations
+
+from .arrays import ProfileArrays, RouteArrays, TraceArrays
+from .codes import (
+    ACTIVE,
+    FAULT,
+    GAS_OVERRIDE,
+    INPUT_NOT_FINITE,
+    INPUT_OK,
+    LEARN_OFF,
+    XY,
+)
+from .hmi import reason, update_outlook
+from .interpolation import cell_at, is_finite, value_at
+from .lever import (
+    CANCEL_CONTACT,
+    RESUME_CONTACT,
+    automatic_set_speed,
+    closed_contacts,
+    update_set_speed,
+)
+from .localization import locate
+from .modes import (
+    BRAKE_PRESS,
+    CANCEL,
+    FAIL,
+    GAS_PRESS,
+    GAS_RELEASE,
+    LOST,
+    RECOVER,
+    RESUME,
+    SWITCH_OFF,
+    SWITCH_ON,
+    next_mode,
+)
+from .recorder import record_sample
+from .state import PldfState
+from .tracking import target_speed, update_request
+
+
+def drive_step(
+    st: PldfState,
+    route: RouteArrays,
+    profile: ProfileArrays,
+    trace: TraceArrays,
+    step_s: float,
+) -> None:
+    """Advance by one communication step of ``step_s`` > 0 seconds with constant inputs."""
+    check_inputs(st)
+    if st.input_state != INPUT_NOT_FINITE:
+        locate(st, route)
+        record_sample(st, route, trace)
+        update_mode_and_set_speed(st, route, profile)
+    else:
+        st.mode = next_mode(st.mode, FAIL)
+        st.vehicle_acceleration_mps2 = 0.0
+    update_request(st, route, profile, step_s)
+    st.time_ns += int(1e9 * step_s + 0.5)
+    st.ahead_m = 0.0
+    if st.input_state != INPUT_NOT_FINITE:
+        st.ahead_m = max(st.vehicle_speed_mps, 0.0) * step_s
+    update_outputs(st, route, profile)
+
+
+def refresh(st: PldfState, route: RouteArrays, profile: ProfileArrays) -> None:
+    """Recompute the outputs from new inputs without advancing time, recording or deciding."""
+    check_inputs(st)
+    if st.input_state == INPUT_NOT_FINITE:
+        return
+    locate(st, route)
+    if st.samples == 0:
+        st.localized = 0  # the car may be placed anywhere until the first step
+    st.ahead_m = 0.0
+    update_outputs(st, route, profile)
+
+
+def check_inputs(st: PldfState) -> None:
+    """Set ``input_state`` to NOT_FINITE if an input that is used is NaN or infinite."""
+    position = st.vehicle_s_m
+    if st.localization == XY:
+        position = st.vehicle_x_m + st.vehicle_y_m
+    total = position + st.vehicle_speed_mps + st.vehicle_acceleration_mps2
+    if is_finite(total + st.driver_gas_pedal + st.driver_brake_pedal):
+        st.input_state = INPUT_OK
+    else:
+        st.input_state = INPUT_NOT_FINITE
+        st.invalid_ns = st.time_ns
+
+
+def update_mode_and_set_speed(st: PldfState, route: RouteArrays, profile: ProfileArrays) -> None:
+    """Feed this sample's events to the table of transitions; brake and failures come last."""
+    closed = closed_contacts(st)
+    mode = next_mode(st.mode, SWITCH_ON if st.main_switch != 0 else SWITCH_OFF)
+    if mode == FAULT and st.time_ns - st.invalid_ns >= 1e9 * st.control_fault_hold_s:
+        mode = next_mode(mode, RECOVER)
+    if closed & RESUME_CONTACT:
+        mode = next_mode(mode, RESUME)
+    if closed & CANCEL_CONTACT:
+        mode = next_mode(mode, CANCEL)
+    pressed = st.driver_gas_pedal > st.control_pedal_threshold
+    mode = next_mode(mode, GAS_PRESS if pressed else GAS_RELEASE)
+    if st.driver_brake_pedal > st.control_pedal_threshold:
+        mode = next_mode(mode, BRAKE_PRESS)
+    if st.input_state != INPUT_OK:
+        mode = next_mode(mode, LOST)
+    st.mode = mode
+    update_set_speed(st, route, profile, closed)
+
+
+def update_outputs(st: PldfState, route: RouteArrays, profile: ProfileArrays) -> None:
+    """Fill the outputs for the position ``ahead_m`` behind the last sample."""
+    s_m = st.s_m + st.ahead_m
+    automatic = automatic_set_speed(route, profile, s_m)
+    manual = st.manual_set_mps if s_m < st.manual_end_m else 0.0
+    st.function_active = 1 if st.mode in (ACTIVE, GAS_OVERRIDE) else 0
+    st.target_speed_mps = target_speed(st, route, profile, s_m)
+    st.base_speed_mps = value_at(profile.base_mps, s_m)
+    st.set_speed_mps = manual if manual > 0.0 else automatic
+    st.set_speed_offset_mps = st.set_speed_mps - automatic
+    st.limit_mps = route.limit_mps[cell_at(len(route.limit_mps), s_m)]
+    if st.total_ns > 0:
+        st.rate_pedal = st.pedal_ns / st.total_ns
+        st.rate_set_speed = st.set_speed_ns / st.total_ns
+        st.rate_combined = st.combined_ns / st.total_ns
+    st.hmi_reason = reason(st, route, profile, s_m)
+    st.hmi_learned_delta_mps = value_at(profile.learned_mps, s_m) - st.base_speed_mps
+    st.hmi_learning = 1 if st.learn != LEARN_OFF and st.eligible != 0 else 0
+    update_outlook(st, profile, s_m)

@@ -1,0 +1,109 @@
+"""What the instrument cluster tells the driver: why this speed, and what comes next."""
+
+from __future__ import annotations
+
+from .arrays import Floats, ProfileArrays, RouteArrays
+from .codes import (
+    FAULT,
+    GAS_OVERRIDE,
+    OFF,
+    REASON_CAP_CURVE,
+    REASON_CAP_LEGAL,
+    REASON_COASTING_TO_LIMIT,
+    REASON_CURVE,
+    REASON_FAULT,
+    REASON_LEARNED_FASTER,
+    REASON_LEARNED_OFFSET,
+    REASON_LEARNED_SLOWER,
+    REASON_LIMIT,
+    REASON_MANUAL_SET,
+    REASON_OVERRIDE,
+    REASON_STANDBY,
+    STANDBY,
+)
+from .interpolation import cell_at, value_at
+from .state import PldfState
+
+PHASE_MPS2 = 0.05  # weaker accelerations of the profile count as cruising
+CAP_MPS = 0.01  # nearer to a hard bound than this: the bound is the reason
+
+
+def find_turns(speed: Floats, turn_m: Floats) -> None:
+    """Fill ``turn_m``: where the present acceleration phase of ``speed``, else the next, ends."""
+    n = len(speed)
+    turn_m[n - 1] = n - 1.0
+    after = 0
+    for i in range(n - 2, -1, -1):
+        acceleration = 0.5 * (speed[i + 1] * speed[i + 1] - speed[i] * speed[i])
+        phase = 0
+        if acceleration > PHASE_MPS2:
+            phase = 1
+        elif acceleration < -PHASE_MPS2:
+            phase = -1
+        turn_m[i] = turn_m[i + 1] if phase in (0, after) else i + 1.0
+        after = phase
+
+
+def find_limit_ends(limit: Floats, limit_end_m: Floats) -> None:
+    """Fill ``limit_end_m``: where the legal limit of each cell ends, at last the route's end."""
+    n = len(limit)
+    limit_end_m[n - 1] = n - 1.0
+    for i in range(n - 2, -1, -1):
+        limit_end_m[i] = limit_end_m[i + 1] if limit[i] == limit[i + 1] else i + 1.0
+
+
+def reason(st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m: float) -> int:
+    """Return the code of the reason for the present speed."""
+    if st.mode == FAULT:
+        return REASON_FAULT
+    if st.mode in (OFF, STANDBY):
+        return REASON_STANDBY
+    if st.mode == GAS_OVERRIDE:
+        return REASON_OVERRIDE
+    if st.manual_set_mps > 0.0:
+        return REASON_MANUAL_SET
+    return _reason_of_profile(st, route, profile, s_m)
+
+
+def _reason_of_profile(
+    st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m: float
+) -> int:
+    i = cell_at(len(route.limit_mps), s_m)
+    learned = value_at(profile.learned_mps, s_m)
+    delta = learned - value_at(profile.planned_mps, s_m)
+    if delta > 0.0 and _at_curve_bound(st, route.curvature_per_m[i], learned):
+        return REASON_CAP_CURVE
+    if delta > 0.0 and learned > route.limit_mps[i] + st.learning_over_limit_max_mps - CAP_MPS:
+        return REASON_CAP_LEGAL
+    if delta > st.learning_deviation_min_mps:
+        return REASON_LEARNED_FASTER
+    if delta < -st.learning_deviation_min_mps:
+        return REASON_LEARNED_SLOWER
+    return _reason_of_plan(route, profile, i, learned)
+
+
+def _at_curve_bound(st: PldfState, curvature_per_m: float, speed: float) -> bool:
+    near = speed + CAP_MPS
+    return curvature_per_m * near * near > st.learning_lateral_accel_max_mps2
+
+
+def _reason_of_plan(route: RouteArrays, profile: ProfileArrays, i: int, speed: float) -> int:
+    set_speed = route.limit_mps[i] + profile.offset_mps[i]
+    if speed > set_speed - CAP_MPS:
+        return REASON_LEARNED_OFFSET if profile.offset_mps[i] != 0.0 else REASON_LIMIT
+    turn = int(profile.turn_m[i])
+    if turn > i and profile.planned_mps[turn] < speed:
+        behind = route.limit_mps[turn] + profile.offset_mps[turn]
+        if profile.planned_mps[turn] > behind - CAP_MPS:
+            return REASON_COASTING_TO_LIMIT
+        return REASON_CURVE
+    if profile.open_mps[i] < set_speed - CAP_MPS:
+        return REASON_CURVE
+    return REASON_LIMIT
+
+
+def update_outlook(st: PldfState, profile: ProfileArrays, s_m: float) -> None:
+    """Set the next speed that the profile settles at, and the distance to it."""
+    turn = value_at(profile.turn_m, float(cell_at(len(profile.turn_m), s_m)))
+    st.hmi_next_speed_mps = value_at(profile.learned_mps, turn)
+    st.hmi_next_distance_m = max(turn - s_m, 0.0)

@@ -1,0 +1,161 @@
+"""Recording by metre while driving, and the intervention rates (sections 2, 3.1 and 4).
+
+``record_sample`` is called once per sample, online by the driving function and offline for every
+row of a recording; both therefore learn the same. A sample is what an observer sees at a
+communication point: position, speed and pedals together with mode and set speed then in force.
+"""
+
+from __future__ import annotations
+
+from .arrays import RouteArrays, TraceArrays
+from .codes import ACTIVE, GAS_OVERRIDE, STANDBY
+from .interpolation import cell_at
+from .lever import SAME_SPEED_MPS
+from .state import PldfState
+
+SECOND_NS = 1e-9
+
+
+def record_sample(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None:
+    """Add the sample in ``st`` (time_ns, s_m, inputs, mode and set speed) to trace and rates."""
+    if st.samples > 0 and st.time_ns <= st.previous_ns:
+        return
+    _count_time(st)
+    _follow_intervention(st, trace)
+    _advance_knots(st, route, trace)
+    st.samples += 1
+    st.previous_ns = st.time_ns
+    st.previous_s_m = st.s_m
+    st.previous_speed_mps = st.vehicle_speed_mps
+    st.previous_mode = st.mode
+    st.previous_brake = _brakes(st)
+    st.previous_set_mps = 0.0
+    if abs(st.set_speed_offset_mps) > SAME_SPEED_MPS:
+        st.previous_set_mps = st.set_speed_mps
+
+
+def _brakes(st: PldfState) -> int:
+    return 1 if st.driver_brake_pedal > st.control_pedal_threshold else 0
+
+
+def _count_time(st: PldfState) -> None:
+    """Charge the time since the previous sample to what was in force at that sample."""
+    if st.samples == 0:
+        return
+    passed = st.time_ns - st.previous_ns
+    st.total_ns += passed
+    if st.intervening != 0:
+        st.pedal_ns += passed
+    if st.previous_set_mps > 0.0:
+        st.set_speed_ns += passed
+    if st.intervening != 0 or st.previous_set_mps > 0.0:
+        st.combined_ns += passed
+    else:
+        st.gap_uncovered_ns += passed
+
+
+def _follow_intervention(st: PldfState, trace: TraceArrays) -> None:
+    """Open, extend or close the pedal intervention; its end is always the latest sample."""
+    if st.intervening != 0 and not _still_inactive(st):
+        st.intervening = 0
+        st.intervention_end_ns = st.time_ns
+        st.gap_uncovered_ns = 0
+        _extend(st, trace)
+    elif st.intervening != 0:
+        _extend(st, trace)
+    elif _driver_took_over(st):
+        _open_intervention(st, trace)
+
+
+def _still_inactive(st: PldfState) -> bool:
+    if st.mode == GAS_OVERRIDE:
+        return True
+    # Standby after gas without any brake is the lever's doing, not the pedal's.
+    by_pedal = st.previous_mode == STANDBY or st.previous_brake + _brakes(st) > 0
+    return st.mode == STANDBY and by_pedal
+
+
+def _driver_took_over(st: PldfState) -> bool:
+    if st.mode == GAS_OVERRIDE:
+        return True
+    was_driving = st.previous_mode in (ACTIVE, GAS_OVERRIDE)
+    braked = st.previous_brake + _brakes(st) > 0
+    return st.samples > 0 and st.mode == STANDBY and was_driving and braked
+
+
+def _open_intervention(st: PldfState, trace: TraceArrays) -> None:
+    gap_ns = st.time_ns - st.intervention_end_ns
+    st.intervening = 1
+    if st.intervention_end_ns >= 0 and gap_ns < 1e9 * st.learning_pedal_gap_s:
+        st.pedal_ns += gap_ns
+        st.combined_ns += st.gap_uncovered_ns
+        _extend(st, trace)
+    elif st.drive_interventions < len(trace.start_m):
+        st.drive_interventions += 1
+        trace.start_m[st.drive_interventions - 1] = _furthest(st)
+        _extend(st, trace)
+
+
+def _extend(st: PldfState, trace: TraceArrays) -> None:
+    trace.end_m[st.drive_interventions - 1] = _furthest(st)
+
+
+def _furthest(st: PldfState) -> float:
+    return st.s_m if st.samples == 0 else max(st.s_m, st.knot_s_m)
+
+
+def _advance_knots(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None:
+    """Section 3.1: drop samples that do not advance; at standstill keep the lowest speed."""
+    time_s = SECOND_NS * st.time_ns
+    speed = st.vehicle_speed_mps
+    if st.samples == 0:
+        st.from_s_m = st.s_m - 1e-9
+        st.from_speed_mps = speed
+        st.from_time_s = time_s
+        st.knot_s_m = st.s_m
+        st.knot_speed_mps = speed
+        st.knot_time_s = time_s
+    elif st.s_m > st.knot_s_m:
+        st.from_s_m = st.knot_s_m
+        st.from_speed_mps = st.knot_speed_mps
+        st.from_time_s = st.knot_time_s
+        st.knot_s_m = st.s_m
+        st.knot_speed_mps = speed
+        st.knot_time_s = time_s
+    elif st.s_m == st.knot_s_m and speed < st.knot_speed_mps:
+        st.knot_speed_mps = speed
+    else:
+        return
+    _write_nodes(st, route, trace)
+
+
+def _write_nodes(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None:
+    """Interpolate the nodes in (from, knot]."""
+    hole = _is_hole(st)
+    last = min(int(max(st.knot_s_m, -1.0) + 1.0), len(trace.speed_mps))
+    for i in range(max(int(max(st.from_s_m, -1.0) + 1.0), 0), last):
+        part = (i - st.from_s_m) / (st.knot_s_m - st.from_s_m)
+        speed = st.from_speed_mps + part * (st.knot_speed_mps - st.from_speed_mps)
+        trace.speed_mps[i] = speed
+        trace.time_s[i] = st.from_time_s + part * (st.knot_time_s - st.from_time_s)
+        trace.usable[i] = 1.0 if st.eligible != 0 and speed >= st.learning_speed_min_mps else 0.0
+        trace.gap[i] = 1.0 if hole else 0.0
+        trace.set_speed_mps[i] = _set_speed_for(st, route, i)
+
+
+def _is_hole(st: PldfState) -> bool:
+    """Tell whether too long a time or too far a jump lies before this sample."""
+    if st.samples == 0:
+        return False
+    passed_s = SECOND_NS * (st.time_ns - st.previous_ns)
+    fastest = max(st.previous_speed_mps, st.vehicle_speed_mps)
+    far = st.s_m - st.previous_s_m > fastest * passed_s + st.control_position_jump_max_m
+    return far or passed_s > st.learning_recording_gap_s
+
+
+def _set_speed_for(st: PldfState, route: RouteArrays, node: int) -> float:
+    """Return the manual set speed in force at ``node``: it does not outlive its legal limit."""
+    before = cell_at(len(route.limit_mps), st.previous_s_m)
+    if st.samples == 0 or route.limit_mps[before] != route.limit_mps[node]:
+        return 0.0
+    return st.previous_set_mps

@@ -1,0 +1,74 @@
+"""From profile and set speed to an acceleration request (section 2).
+
+The request is a state that moves by at most the jerk limit in EVERY mode. While the driver drives
+(STANDBY, OFF) it follows the measured acceleration, during a gas override it glides to 0; so there
+is no step in it when the driver hands over.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from .arrays import ProfileArrays, RouteArrays
+from .codes import ACTIVE, FAULT, GAS_OVERRIDE
+from .interpolation import value_at
+from .lever import automatic_set_speed
+from .state import PldfState
+
+
+def target_speed(st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m: float) -> float:
+    """Return the speed to drive at ``s_m`` in m/s: the profile, changed by a manual set speed.
+
+    A manual set speed below the automatic one caps the profile. Above it, curves still count
+    (``open_mps``, or the learned speed where that is higher), the speed behind the next sign is
+    approached at the planner's deceleration, and places learned slower stay slower by as much.
+    """
+    learned = value_at(profile.learned_mps, s_m)
+    if st.manual_set_mps <= 0.0 or s_m >= st.manual_end_m:
+        return learned
+    if st.manual_set_mps <= automatic_set_speed(route, profile, s_m):
+        return min(learned, st.manual_set_mps)
+    speed = min(st.manual_set_mps, max(learned, value_at(profile.open_mps, s_m)))
+    behind = value_at(profile.learned_mps, st.manual_end_m)
+    approach = behind * behind - 2.0 * st.planner_accel_min_mps2 * (st.manual_end_m - s_m)
+    speed = min(speed, max(learned, sqrt(approach)))
+    slower = learned - value_at(profile.planned_mps, s_m)
+    return max(speed + min(slower, 0.0), 0.0)
+
+
+def update_request(
+    st: PldfState, route: RouteArrays, profile: ProfileArrays, step_s: float
+) -> None:
+    """Move the request over one communication step, in equal internal steps of at most 10 ms."""
+    substeps = int(step_s / 0.010 + 0.999999)
+    if substeps < 1:
+        substeps = 1
+    change = st.control_request_jerk_max_mps3 * step_s / substeps
+    for k in range(substeps):
+        wanted = _wanted(st, route, profile, step_s * k / substeps)
+        wanted = min(max(wanted, st.control_request_min_mps2), st.control_request_max_mps2)
+        low = st.acceleration_request_mps2 - change
+        high = st.acceleration_request_mps2 + change
+        st.acceleration_request_mps2 = min(max(wanted, low), high)
+
+
+def _wanted(st: PldfState, route: RouteArrays, profile: ProfileArrays, ahead_s: float) -> float:
+    """Return the acceleration to aim at, ``ahead_s`` after the sample of the inputs."""
+    if st.mode in (GAS_OVERRIDE, FAULT):
+        return 0.0
+    acceleration = st.vehicle_acceleration_mps2
+    if st.mode != ACTIVE:
+        return acceleration
+    start = max(st.vehicle_speed_mps, 0.0)
+    speed = max(start + acceleration * ahead_s, 0.0)
+    s_m = st.s_m + 0.5 * (start + speed) * ahead_s
+    error = target_speed(st, route, profile, s_m) - speed
+    correction = st.control_speed_gain_per_s * error
+    correction = min(correction, st.control_recovery_accel_max_mps2)
+    correction = max(correction, st.control_recovery_accel_min_mps2)
+    # The slope of v*v/2 over the next metre, one vehicle delay ahead, is the profile's own
+    # acceleration there.
+    preview = s_m + speed * st.control_preview_s
+    first = target_speed(st, route, profile, preview)
+    second = target_speed(st, route, profile, preview + 1.0)
+    return 0.5 * (second * second - first * first) + correction
