@@ -1,0 +1,16 @@
+"""Roads: OpenDRIVE and CSV files to routes, and the shipped study road."""
+
+from __future__ import annotations
+
+from .csv_file import write_route_csv
+from .load import packed_route, read_route
+from .route import Route, fingerprint, route_arrays
+
+__all__ = [
+    "Route",
+    "fingerprint",
+    "packed_route",
+    "read_route",
+    "route_arrays",
+    "write_route_csv",
+]

@@ -1,0 +1,193 @@
+"""The route as a list of knots, its per-metre arrays and its fingerprint."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..instance import ModelError
+from ..kernel.arrays import RouteArrays
+
+FloatArray = NDArray[np.float64]
+
+LENGTH_MIN_M: Final = 2.0
+# A limit above this is a km/h value in a m/s field, not a road.
+LIMIT_MAX_MPS: Final = 300.0 / 3.6
+# Curves tighter than 1 m do not exist on roads; broken polynomials and kinks of a line do.
+CURVATURE_MAX_PER_M: Final = 1.0
+COLUMNS: Final = ("s_m", "curvature_per_m", "speed_limit_mps", "grade", "x_m", "y_m")
+
+
+@dataclass(frozen=True, eq=False)
+class Route:
+    """A road to drive along, given by knots; all arrays are float64 of one length.
+
+    Raises:
+        ModelError: when the knots are no usable route (``first_fault``).
+    """
+
+    name: str
+    s_m: FloatArray  # from 0, not decreasing; two equal values are a jump
+    curvature_per_m: FloatArray  # signed, positive to the left, linear between knots
+    speed_limit_mps: FloatArray  # in force from this knot to the next
+    grade: FloatArray  # rise over run, linear between knots
+    x_m: FloatArray  # east, linear between knots; 0 when the source has no line
+    y_m: FloatArray  # north
+    has_line: bool = True
+
+    def __post_init__(self) -> None:
+        fault = first_fault(self.knots)
+        if fault is not None:
+            raise ModelError(f"route {self.name}, knot {fault[0]}: {fault[1]}")
+
+    @property
+    def length_m(self) -> float:
+        """Arc length of the whole route."""
+        return float(self.s_m[-1])
+
+    @property
+    def nodes(self) -> int:
+        """Number of nodes of the 1 m grid, floor(length) + 1."""
+        return int(np.floor(self.length_m)) + 1
+
+    @property
+    def knots(self) -> dict[str, FloatArray]:
+        """The arrays by the column names of the route file."""
+        return {name: getattr(self, name) for name in COLUMNS}
+
+
+def first_fault(knots: dict[str, FloatArray]) -> tuple[int, str] | None:
+    """Return the index of the first unusable knot and what is wrong with it, None if all are good.
+
+    ``knots`` maps the names in ``COLUMNS`` to arrays of equal length.
+    """
+    s_m = knots["s_m"]
+    if len(s_m) == 0:
+        return 0, "there are no knots: a route needs at least two"
+    faults = [_first(~np.isfinite(values), _not_finite(name)) for name, values in knots.items()]
+    found = [fault for fault in faults if fault is not None] or _numeric_faults(knots)
+    if found:
+        index, text = min(found, key=lambda fault: fault[0])
+        return index, text.format(**{name: float(values[index]) for name, values in knots.items()})
+    if s_m[-1] < LENGTH_MIN_M:
+        return len(s_m) - 1, f"the route is {s_m[-1]:g} m long; it must be at least 2 m long"
+    return None
+
+
+def _numeric_faults(knots: dict[str, FloatArray]) -> list[tuple[int, str]]:
+    s_m, limit = knots["s_m"], knots["speed_limit_mps"]
+    late = np.zeros(len(s_m), dtype=bool)
+    late[0] = s_m[0] != 0.0
+    thrice = np.zeros_like(late)
+    thrice[2:] = s_m[2:] == s_m[:-2]
+    back = np.zeros_like(late)
+    back[1:] = s_m[1:] < s_m[:-1]
+    faults = (
+        _first(late, "s_m starts at {s_m:g}; it must start at 0 (subtract {s_m:g} everywhere)"),
+        _first(back, "s_m = {s_m:g} lies before the previous one; sort the route by s_m"),
+        _first(thrice, "s_m = {s_m:g} for the third time; two equal values make a jump"),
+        _first(limit <= 0.0, "speed_limit_mps = {speed_limit_mps:g}; a limit must be above 0"),
+        _first(
+            limit > LIMIT_MAX_MPS,
+            "speed_limit_mps = {speed_limit_mps:g} m/s is above 300 km/h; is the unit right?",
+        ),
+        _first(
+            np.abs(knots["curvature_per_m"]) > CURVATURE_MAX_PER_M,
+            "curvature_per_m = {curvature_per_m:g}: a curve tighter than 1 m; correct the line",
+        ),
+    )
+    return [fault for fault in faults if fault is not None]
+
+
+def _not_finite(name: str) -> str:
+    return f"{name} = {{{name}}}; every value must be a finite number"
+
+
+def _first(bad: NDArray[np.bool_], text: str) -> tuple[int, str] | None:
+    index = int(np.argmax(bad))
+    return (index, text) if bad[index] else None
+
+
+def route_arrays(route: Route) -> RouteArrays:
+    """Return what the kernel needs per metre: float64 arrays of ``route.nodes`` values.
+
+    A cell's limit is the lowest in force anywhere in it, its curvature the largest absolute value
+    in it. A sign or a jump exactly at node i + 1 belongs to cell i + 1 alone.
+    """
+    nodes = np.arange(route.nodes, dtype=np.float64)
+    s_m = route.s_m
+    return RouteArrays(
+        limit_mps=_repeat_last(_lowest_limit(s_m, route.speed_limit_mps, nodes)),
+        curvature_per_m=_repeat_last(_sharpest_curve(s_m, route.curvature_per_m, nodes)),
+        grade=_right_values(s_m, route.grade, nodes),
+        x_m=_right_values(s_m, route.x_m, nodes),
+        y_m=_right_values(s_m, route.y_m, nodes),
+    )
+
+
+def fingerprint(route: Route) -> str:
+    """Return 16 hex digits of SHA-256 over all that shapes a profile on this route.
+
+    That is the length (rounded to 1 mm) and per metre the limit (1e-3 m/s) and the absolute
+    curvature (1e-6 1/m), as little-endian 64-bit integers; neither the grade nor the line.
+    """
+    arrays = route_arrays(route)
+    digest = hashlib.sha256(_rounded(np.array([route.length_m]), 1e3))
+    digest.update(_rounded(np.asarray(arrays.limit_mps), 1e3))
+    digest.update(_rounded(np.asarray(arrays.curvature_per_m), 1e6))
+    return digest.hexdigest()[:16]
+
+
+def _rounded(values: FloatArray, scale: float) -> bytes:
+    return np.rint(values * scale).astype("<i8").tobytes()
+
+
+def _repeat_last(cells: FloatArray) -> FloatArray:
+    return np.append(cells, cells[-1])
+
+
+def _lowest_limit(s_m: FloatArray, limit: FloatArray, nodes: FloatArray) -> FloatArray:
+    lowest = limit[np.searchsorted(s_m, nodes[:-1], side="right") - 1]
+    # The first knot of a jump is in force over no length at all: it does not count.
+    at = np.flatnonzero((s_m[:-1] < s_m[1:]) & (s_m[:-1] < nodes[-1]))
+    np.minimum.at(lowest, s_m[at].astype(np.intp), limit[at])
+    return lowest
+
+
+def _sharpest_curve(s_m: FloatArray, curvature: FloatArray, nodes: FloatArray) -> FloatArray:
+    # |curvature| is convex between knots: its maximum lies at a knot or at an end of the cell.
+    sharpest = np.maximum(
+        np.abs(_right_values(s_m, curvature, nodes)[:-1]),
+        np.abs(_left_values(s_m, curvature, nodes[1:])),
+    )
+    at = np.flatnonzero((np.floor(s_m) < s_m) & (s_m < nodes[-1]))
+    np.maximum.at(sharpest, s_m[at].astype(np.intp), np.abs(curvature[at]))
+    return sharpest
+
+
+def _right_values(s_m: FloatArray, values: FloatArray, at: FloatArray) -> FloatArray:
+    """Linear interpolation; behind the jump where one lies exactly at ``at``."""
+    before = np.minimum(np.searchsorted(s_m, at, side="right") - 1, len(s_m) - 1)
+    return _between(s_m, values, at, before)
+
+
+def _left_values(s_m: FloatArray, values: FloatArray, at: FloatArray) -> FloatArray:
+    """The same, before the jump."""
+    after = np.searchsorted(s_m, at, side="left")
+    return np.where(
+        s_m[after] == at, values[after], _between(s_m, values, at, np.maximum(after - 1, 0))
+    )
+
+
+def _between(
+    s_m: FloatArray, values: FloatArray, at: FloatArray, before: NDArray[np.intp]
+) -> FloatArray:
+    after = np.minimum(before + 1, len(s_m) - 1)
+    span = s_m[after] - s_m[before]
+    share = np.divide(at - s_m[before], span, out=np.zeros_like(at), where=span > 0.0)
+    blend: FloatArray = values[before] * (1.0 - share) + values[after] * share
+    return blend

@@ -1,0 +1,115 @@
+"""XML elements that know their line, and tolerance for what real files put before the XML.
+
+The standard library's tree drops line numbers; errors without them cost the user an hour in a file
+of a hundred thousand lines.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from xml.parsers import expat
+
+from ..instance import ModelError
+
+
+@dataclass(slots=True)
+class Element:
+    """One XML element: tag without namespace prefix, attributes, children, line in the file."""
+
+    tag: str
+    attributes: dict[str, str]
+    line: int
+    children: list[Element] = field(default_factory=list)
+
+    def find(self, tag: str) -> Element | None:
+        """Return the first child called ``tag``."""
+        return next(self.all(tag), None)
+
+    def all(self, *path: str) -> Iterator[Element]:
+        """Yield the descendants at the end of ``path``, in file order."""
+        for child in self.children:
+            if child.tag == path[0]:
+                if len(path) == 1:
+                    yield child
+                else:
+                    yield from child.all(*path[1:])
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where in which file something stands, for errors."""
+
+    path: Path
+    road: str = ""
+
+    def error(self, element: Element, text: str) -> ModelError:
+        """Return the error that names file, line, road and what to do about it."""
+        road = f", road {self.road}" if self.road else ""
+        return ModelError(f"{self.path}, line {element.line}{road}: {text}")
+
+    def number(self, element: Element, name: str, default: float | None = None) -> float:
+        """Return the attribute as a finite number; ModelError when it is none."""
+        text = element.attributes.get(name)
+        if text is None and default is not None:
+            return default
+        try:
+            value = float(text if text is not None else "")
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            found = "is missing" if text is None else f"= {text[:40]!r} is not a finite number"
+            raise self.error(element, f"<{element.tag}> attribute {name} {found}")
+        return value
+
+
+def parse_xml(data: bytes, root: str, path: Path) -> Element:
+    """Return the root element, which must be called ``root``.
+
+    A byte order mark, comments or any other text before the XML declaration is skipped.
+
+    Raises:
+        ModelError: with file and line.
+    """
+    start = _start(data, root.encode())
+    skipped_lines = data.count(b"\n", 0, start)
+    top = Element("", {}, 0)
+    parser = _parser(top, skipped_lines)
+    try:
+        parser.Parse(data[start:], True)
+    except expat.ExpatError as error:
+        line = error.lineno + skipped_lines
+        raise ModelError(
+            f"{path}, line {line}: not well-formed XML ({expat.ErrorString(error.code)})"
+        ) from None
+    element = top.children[0]
+    if element.tag != root:
+        raise ModelError(f"{path}, line {element.line}: <{element.tag}> where <{root}> should be")
+    return element
+
+
+def _start(data: bytes, root: bytes) -> int:
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):  # UTF-16, left to the parser
+        return 0
+    declaration = data.find(b"<?xml ")
+    return declaration if declaration >= 0 else max(data.find(b"<" + root), 0)
+
+
+def _parser(top: Element, skipped_lines: int) -> expat.XMLParserType:
+    parser = expat.ParserCreate()
+    open_elements = [top]
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        line = parser.CurrentLineNumber + skipped_lines
+        element = Element(tag.rpartition(":")[2], attributes, line)
+        open_elements[-1].children.append(element)
+        open_elements.append(element)
+
+    def end(_: str) -> None:
+        open_elements.pop()
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = end
+    return parser
