@@ -69,7 +69,7 @@ PROFILE_STATUS: Final = Enumeration("ProfileStatus", ("BASE", "LOADED", "REFUSED
 
 # Why the position or an input was not accepted in the last step (0: it was).
 INPUT_OK: Final = 0
-INPUT_NOT_FINITE: Final = 1
+INPUT_INVALID: Final = 1
 OFF_ROUTE: Final = 2
 POSITION_JUMP: Final = 3
-INPUT_STATE: Final = Enumeration("InputState", ("OK", "NOT_FINITE", "OFF_ROUTE", "POSITION_JUMP"))
+INPUT_STATE: Final = Enumeration("InputState", ("OK", "INVALID", "OFF_ROUTE", "POSITION_JUMP"))

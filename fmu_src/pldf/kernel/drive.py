@@ -1,4 +1,4 @@
-"""One communication step of the driving function: sample -> record -> mode -> request -> outputs."""
+"""One communication step: sample -> record -> mode and set speed -> request -> outputs."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from .codes import (
     ACTIVE,
     FAULT,
     GAS_OVERRIDE,
-    INPUT_NOT_FINITE,
+    INPUT_INVALID,
     INPUT_OK,
     LEARN_OFF,
     XY,
 )
 from .hmi import reason, update_outlook
-from .interpolation import cell_at, is_finite, value_at
+from .interpolation import cell_at, value_at
 from .lever import (
     CANCEL_CONTACT,
     RESUME_CONTACT,
@@ -39,6 +39,13 @@ from .recorder import record_sample
 from .state import PldfState
 from .tracking import target_speed, update_request
 
+# Inputs beyond these (m, m/s, m/s2, pedal travel) are a fault of the wiring, not a drive. A
+# comparison with NaN is false, so NaN is caught by the same test.
+POSITION_BOUND = 1e8
+SPEED_BOUND = 1e3
+ACCELERATION_BOUND = 1e3
+PEDAL_BOUND = 1e3
+
 
 def drive_step(
     st: PldfState,
@@ -49,7 +56,7 @@ def drive_step(
 ) -> None:
     """Advance by one communication step of ``step_s`` > 0 seconds with constant inputs."""
     check_inputs(st)
-    if st.input_state != INPUT_NOT_FINITE:
+    if st.input_state != INPUT_INVALID:
         locate(st, route)
         record_sample(st, route, trace)
         update_mode_and_set_speed(st, route, profile)
@@ -59,7 +66,7 @@ def drive_step(
     update_request(st, route, profile, step_s)
     st.time_ns += int(1e9 * step_s + 0.5)
     st.ahead_m = 0.0
-    if st.input_state != INPUT_NOT_FINITE:
+    if st.input_state != INPUT_INVALID:
         st.ahead_m = max(st.vehicle_speed_mps, 0.0) * step_s
     update_outputs(st, route, profile)
 
@@ -67,7 +74,7 @@ def drive_step(
 def refresh(st: PldfState, route: RouteArrays, profile: ProfileArrays) -> None:
     """Recompute the outputs from new inputs without advancing time, recording or deciding."""
     check_inputs(st)
-    if st.input_state == INPUT_NOT_FINITE:
+    if st.input_state == INPUT_INVALID:
         return
     locate(st, route)
     if st.samples == 0:
@@ -77,15 +84,19 @@ def refresh(st: PldfState, route: RouteArrays, profile: ProfileArrays) -> None:
 
 
 def check_inputs(st: PldfState) -> None:
-    """Set ``input_state`` to NOT_FINITE if an input that is used is NaN or infinite."""
-    position = st.vehicle_s_m
+    """Set ``input_state`` to INVALID if an input in use is NaN, infinite or beyond any car."""
+    good = -SPEED_BOUND < st.vehicle_speed_mps < SPEED_BOUND
+    good = good and -ACCELERATION_BOUND < st.vehicle_acceleration_mps2 < ACCELERATION_BOUND
+    good = good and -PEDAL_BOUND < st.driver_gas_pedal < PEDAL_BOUND
+    good = good and -PEDAL_BOUND < st.driver_brake_pedal < PEDAL_BOUND
     if st.localization == XY:
-        position = st.vehicle_x_m + st.vehicle_y_m
-    total = position + st.vehicle_speed_mps + st.vehicle_acceleration_mps2
-    if is_finite(total + st.driver_gas_pedal + st.driver_brake_pedal):
-        st.input_state = INPUT_OK
+        good = good and -POSITION_BOUND < st.vehicle_x_m < POSITION_BOUND
+        good = good and -POSITION_BOUND < st.vehicle_y_m < POSITION_BOUND
     else:
-        st.input_state = INPUT_NOT_FINITE
+        good = good and -POSITION_BOUND < st.vehicle_s_m < POSITION_BOUND
+    st.input_state = INPUT_OK
+    if not good:
+        st.input_state = INPUT_INVALID
         st.invalid_ns = st.time_ns
 
 

@@ -37,8 +37,3 @@ def position_of(rising: Floats, value: float, start: int, end: int) -> float:
                 return float(i)
             return i - 1 + (value - rising[i - 1]) / step
     return float(start)
-
-
-def is_finite(value: float) -> bool:
-    """Tell whether ``value`` is neither NaN nor infinite."""
-    return value - value == 0.0

@@ -182,6 +182,13 @@ class Parameters(ControlParameters):
         "Longest time after the sign that counts as settling",
         "s", start=12.0, low=0.0, high=120.0,
     )  # fmt: skip
+    learning_offset_settled_mps: float = real_parameter(
+        "Distance from the new speed at which the car counts as settled",
+        "m/s",
+        start=KMH,
+        low=0.0,
+        high=20.0,
+    )
     learning_lateral_accel_max_mps2: float = real_parameter(
         "Lateral acceleration never exceeded by a learned profile",
         "m/s2", start=4.0, low=0.1, high=10.0,

@@ -107,6 +107,8 @@ class PldfState(Outputs):
     previous_mode: int = 0
     previous_brake: int = 0
     previous_set_mps: float = 0.0
+    first_node: int = 0  # recorded are the nodes first_node .. first_node + nodes - 1
+    nodes: int = 0
     intervening: int = 0
     intervention_end_ns: int = -1
     gap_uncovered_ns: int = 0

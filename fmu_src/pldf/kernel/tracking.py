@@ -40,9 +40,7 @@ def update_request(
     st: PldfState, route: RouteArrays, profile: ProfileArrays, step_s: float
 ) -> None:
     """Move the request over one communication step, in equal internal steps of at most 10 ms."""
-    substeps = int(step_s / 0.010 + 0.999999)
-    if substeps < 1:
-        substeps = 1
+    substeps = max(int(step_s / 0.010 + 0.999999), 1)
     change = st.control_request_jerk_max_mps3 * step_s / substeps
     for k in range(substeps):
         wanted = _wanted(st, route, profile, step_s * k / substeps)

@@ -1,0 +1,138 @@
+"""The kernels as numba machine code, for everything that runs outside an FMU.
+
+The kernel's source carries no decorator and does not know numba. Here its functions are copied into
+one shared namespace, in which every callee is compiled too, with the options that make the result
+equal to CPython's to the bit (no fused multiply-add, no reassociation).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import fields
+from functools import cache
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from .kernel import (
+    bounds,
+    codes,
+    drive,
+    hmi,
+    interpolation,
+    learning,
+    lever,
+    localization,
+    modes,
+    offsets,
+    planner,
+    recorder,
+    smoothing,
+    stretch,
+    tracking,
+)
+
+Namespace = dict[str, Callable[..., Any]]
+
+KERNEL_MODULES: tuple[ModuleType, ...] = (
+    codes,
+    interpolation,
+    planner,
+    modes,
+    lever,
+    tracking,
+    localization,
+    recorder,
+    hmi,
+    drive,
+    stretch,
+    smoothing,
+    offsets,
+    bounds,
+    learning,
+)
+
+
+@cache
+def kernel() -> Namespace:
+    """Return the compiled functions of the driving function's kernel by name."""
+    return compile_modules(KERNEL_MODULES)
+
+
+def compile_modules(modules: Sequence[ModuleType]) -> Namespace:
+    """Compile every function defined in ``modules`` (lazily, cached on disk); return them by name.
+
+    Raises ValueError when two modules define functions of the same name.
+    """
+    shared: dict[str, Any] = {}
+    owners: dict[str, str] = {}
+    for module in modules:
+        for name, value in vars(module).items():
+            if not isinstance(value, FunctionType):
+                shared.setdefault(name, value)
+            elif value.__module__ == module.__name__:
+                if owners.setdefault(name, module.__name__) != module.__name__:
+                    raise ValueError(f"{name} is defined in {owners[name]} and {module.__name__}")
+                shared[name] = value
+    functions = {name: shared[name] for name in owners}
+    with _cache_folder(modules) as cached:
+        for name, function in functions.items():
+            copy = FunctionType(function.__code__, shared, name, function.__defaults__)
+            copy.__module__ = function.__module__
+            shared[name] = numba.njit(error_model="numpy", cache=cached)(copy)
+    return {name: shared[name] for name in functions}
+
+
+@contextmanager
+def _cache_folder(modules: Sequence[ModuleType]) -> Iterator[bool]:
+    """Point numba's cache to a folder named after the source of all modules together.
+
+    Numba itself only notices changes in the file of the outermost function, not in its callees.
+    """
+    digest = hashlib.sha256(numba.__version__.encode())
+    for module in modules:
+        digest.update(inspect.getsource(module).encode())
+    folder = _user_cache() / f"kernel-{digest.hexdigest()[:16]}"
+    before = numba.config.CACHE_DIR
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        usable = os.access(folder, os.W_OK)
+    except OSError:
+        usable = False  # compiled anew in every process: slower, not wrong
+    numba.config.CACHE_DIR = str(folder) if usable else before
+    try:
+        yield usable
+    finally:
+        numba.config.CACHE_DIR = before
+
+
+def _user_cache() -> Path:
+    if "PLDF_CACHE" in os.environ:
+        return Path(os.environ["PLDF_CACHE"])
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", "~")).expanduser() / "pldf"
+    return Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")).expanduser() / "pldf"
+
+
+def pack(record: Any) -> NDArray[np.void]:
+    """Return a one-element structured array with the numbers of a record (dataclass instance)."""
+    names = [f.name for f in fields(record)]
+    kinds = ["i8" if isinstance(f.default, int) else "f8" for f in fields(record)]
+    packed = np.zeros(1, np.dtype(list(zip(names, kinds, strict=True))))
+    packed[0] = tuple(getattr(record, name) for name in names)
+    return packed
+
+
+def unpack(packed: NDArray[np.void], record: Any) -> None:
+    """Write the numbers of a packed record back into ``record``."""
+    for f in fields(record):
+        setattr(record, f.name, packed[0][f.name].item())
