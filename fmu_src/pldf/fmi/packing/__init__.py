@@ -1,0 +1,1 @@
+"""Building the archives; nothing in here is packed into one."""

@@ -1,0 +1,105 @@
+"""One FMU from a slave script: isolate its packages, let pythonfmu build, make it reproducible."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib import import_module, metadata
+from pathlib import Path
+
+from pythonfmu import FmuBuilder  # type: ignore[import-untyped]
+
+from ..slave import ModelSlave
+from .archive import read_members, with_guid, write_archive
+from .documentation import document
+from .isolate import copy_module, copy_package
+
+
+@dataclass(frozen=True)
+class Package:
+    """A package that goes into an FMU; ``skip`` names what stays out, relative to ``folder``."""
+
+    folder: Path
+    skip: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """What one FMU is made of.
+
+    Attributes:
+        script: module that defines the slave class.
+        packages: in the order of dependence, each may import those before it by name.
+        icon: PNG shown by importers.
+        license: licence text of the project.
+    """
+
+    script: Path
+    packages: tuple[Package, ...]
+    icon: Path
+    license: Path
+
+
+def build(recipe: Recipe, out: Path) -> Path:
+    """Build the FMU into folder ``out`` and return its path; ValueError if it cannot be packed."""
+    out.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="fmu_") as temporary:
+        stage = Path(temporary, "stage")
+        stage.mkdir()
+        names: dict[str, str] = {}
+        for package in recipe.packages:
+            folder = package.folder
+            names[folder.name] = copy_package(folder, stage, skip=package.skip, names=names)
+        script = copy_module(recipe.script, stage, names)
+        with _importing_from(stage, script.stem, names):
+            slave = slave_of(script.stem)
+            folders = [stage / name for name in names.values()]
+            raw = FmuBuilder.build_FMU(script, dest=temporary, project_files=folders)
+            members = {**read_members(raw), **_extras(recipe, slave)}
+    path = out / f"{type(slave).__name__}.fmu"
+    write_archive(path, with_guid(members))
+    return path
+
+
+def slave_of(module: str) -> ModelSlave:
+    """Return an instance of the slave class that ``module`` defines."""
+    for thing in vars(import_module(module)).values():
+        own = isinstance(thing, type) and thing.__module__ == module
+        if own and any(base.__name__ == ModelSlave.__name__ for base in thing.__mro__):
+            slave: ModelSlave = thing(instance_name="description")
+            return slave
+    raise ValueError(f"module {module} defines no slave class")
+
+
+def _extras(recipe: Recipe, slave: ModelSlave) -> dict[str, bytes]:
+    page = document(type(slave).__name__, slave.about, slave.__doc__ or "", slave.signals)
+    return {
+        "model.png": recipe.icon.read_bytes(),
+        "documentation/index.html": page.encode(),
+        "documentation/licenses/LICENSE.txt": recipe.license.read_bytes(),
+        "documentation/licenses/pythonfmu.txt": _license_of("pythonfmu"),
+    }
+
+
+def _license_of(distribution: str) -> bytes:
+    for file in metadata.files(distribution) or ():
+        if file.name.startswith("LICENSE"):
+            return Path(str(file.locate())).read_bytes()
+    raise ValueError(f"the installed {distribution} has no licence file")
+
+
+@contextmanager
+def _importing_from(stage: Path, script: str, names: Mapping[str, str]) -> Iterator[None]:
+    """Import from ``stage`` for a while and forget it again: the next build has other names."""
+    path = list(sys.path)
+    sys.path.insert(0, str(stage))
+    try:
+        yield
+    finally:
+        sys.path[:] = path
+        for name in list(sys.modules):
+            if name.partition(".")[0] in (script, *names.values()):
+                del sys.modules[name]

@@ -1,0 +1,1 @@
+"""A small model with every kind of variable, to test the FMI binding without any driving."""

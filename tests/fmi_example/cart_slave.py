@@ -1,0 +1,17 @@
+"""FMU of the cart."""
+
+from cart.model import Cart
+from pldf.fmi.slave import ModelSlave
+
+
+class PushedCart(ModelSlave):
+    """A cart for tests.
+
+    It has every kind of variable.
+    """
+
+    about = "A cart pushed by a force"
+
+    def create(self) -> Cart:
+        """Return a cart."""
+        return Cart()
