@@ -1,0 +1,64 @@
+"""``LongitudinalVehicle``: the vehicle kernel with its route's grade and its messages."""
+
+from __future__ import annotations
+
+import numpy as np
+from pldf.instance import Arrays, Instance, view
+from pldf.roads import Route, packed_route, read_route, route_arrays
+
+from .vehicle_kernel import vehicle_refresh, vehicle_start, vehicle_step
+from .vehicle_state import VehicleState, VehicleTexts
+
+INVALID_INPUT = (
+    "an input is not a finite number: the request counts as 0, a pedal as released"
+    " (said once per drive)"
+)
+
+
+class LongitudinalVehicle(Instance[VehicleState]):
+    """A car on its route: follows an acceleration request, obeys the pedals.
+
+    ``docs/vehicle.md`` describes pedals, standstill and limits.
+    """
+
+    texts: VehicleTexts
+
+    def __init__(self) -> None:
+        super().__init__(VehicleState(), VehicleTexts())
+
+    def initialize(self) -> None:
+        """Read the route's grade and put the car at its start; ModelError for a bad route."""
+        self.check_parameters()
+        self.clear_memory()
+        grade = np.zeros(1)
+        if self.record.grade_from_route:
+            route = chosen_route(self.record.route_id, self.texts.route_file)
+            grade = np.array(route_arrays(route).grade)
+        self.attach((grade,))
+        vehicle_start(self.record, self._grade)
+        self._warn_once()
+
+    def refresh(self) -> None:
+        """Recompute acceleration and jerk from the inputs."""
+        vehicle_refresh(self.record, self._grade)
+
+    def step(self, step_s: float) -> None:
+        """Advance by ``step_s`` > 0 seconds."""
+        vehicle_step(self.record, self._grade, step_s)
+        self._warn_once()
+
+    def attach(self, arrays: Arrays) -> None:
+        """Take over the grade per metre (one array; none before the first initialization)."""
+        super().attach(arrays)
+        if arrays:
+            self._grade = view(arrays[0])
+
+    def _warn_once(self) -> None:
+        if self.record.invalid_input and not self.record.warned:
+            self.record.warned = 1
+            self.report("warning", INVALID_INPUT)
+
+
+def chosen_route(route_id: int, route_file: str) -> Route:
+    """Return the route of a model: its file if one is named, else the packed route."""
+    return read_route(route_file) if route_file else packed_route(route_id)
