@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from .csv_file import write_route_csv
-from .load import packed_route, read_route
+from .load import open_route, packed_route, read_route
 from .route import Route, fingerprint, route_arrays
 
 __all__ = [
     "Route",
     "fingerprint",
+    "open_route",
     "packed_route",
     "read_route",
     "route_arrays",

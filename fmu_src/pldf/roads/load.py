@@ -48,6 +48,19 @@ def read_route(
     return parse_route_csv(text, path)
 
 
+def open_route(
+    name: str, *, start_road: str | None = None, default_limit_mps: float | None = None
+) -> Route:
+    """Return the route that a person named: ``study`` for the shipped road, else a file.
+
+    Raises:
+        ModelError: as ``read_route``.
+    """
+    if name == "study" and not Path(name).exists():
+        return packed_route(STUDY_ROAD_ID)
+    return read_route(name, start_road=start_road, default_limit_mps=default_limit_mps)
+
+
 def packed_route(route_id: int) -> Route:
     """Return the route with this index among those shipped with the package, 0 = the study road.
 
