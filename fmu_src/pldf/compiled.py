@@ -35,6 +35,7 @@ from .kernel import (
     modes,
     offsets,
     planner,
+    preparation,
     recorder,
     smoothing,
     stretch,
@@ -47,6 +48,7 @@ KERNEL_MODULES: tuple[ModuleType, ...] = (
     codes,
     interpolation,
     planner,
+    preparation,
     modes,
     lever,
     tracking,
@@ -102,17 +104,18 @@ def _cache_folder(modules: Sequence[ModuleType]) -> Iterator[bool]:
     for module in modules:
         digest.update(inspect.getsource(module).encode())
     folder = _user_cache() / f"kernel-{digest.hexdigest()[:16]}"
-    before = numba.config.CACHE_DIR
+    config: Any = numba.config
+    before = config.CACHE_DIR
     try:
         folder.mkdir(parents=True, exist_ok=True)
         usable = os.access(folder, os.W_OK)
     except OSError:
         usable = False  # compiled anew in every process: slower, not wrong
-    numba.config.CACHE_DIR = str(folder) if usable else before
+    config.CACHE_DIR = str(folder) if usable else before
     try:
         yield usable
     finally:
-        numba.config.CACHE_DIR = before
+        config.CACHE_DIR = before
 
 
 def _user_cache() -> Path:

@@ -9,14 +9,21 @@ from __future__ import annotations
 import hashlib
 import json
 import struct
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
-from typing import Any, Generic, Literal, TypeVar
+from math import inf
+from typing import Any, Generic, Literal, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .kernel.arrays import Floats
+from .kernel.signals import Signal, signals_of
+
+Arrays = tuple[NDArray[np.float64], ...]
 Level = Literal["info", "warning", "error"]
 RecordT = TypeVar("RecordT")
+TupleT = TypeVar("TupleT", bound=tuple[Any, ...])
 
 
 class ModelError(ValueError):
@@ -44,7 +51,7 @@ class Instance(Generic[RecordT]):
     def __init__(self, record: RecordT, texts: Any) -> None:
         self.record = record
         self.texts = texts
-        self.arrays: tuple[NDArray[np.float64], ...] = ()
+        self.arrays: Arrays = ()
         self.messages: list[Message] = []
 
     def initialize(self) -> None:
@@ -62,7 +69,28 @@ class Instance(Generic[RecordT]):
     def finish(self) -> None:
         """Do what the end of a drive asks for; called once, whatever way the drive ended."""
 
-    def attach(self, arrays: tuple[NDArray[np.float64], ...]) -> None:
+    def report(self, level: Level, text: str) -> None:
+        """Add a message for the user."""
+        self.messages.append(Message(level, text))
+
+    def check_parameters(self) -> None:
+        """Raise ModelError for the first numeric parameter outside its declared range."""
+        for signal in signals_of(self.record):
+            value = getattr(self.record, signal.field)
+            low, high = _allowed(signal)
+            if signal.causality == "parameter" and not low <= value <= high:
+                raise ModelError(
+                    f"parameter {signal.name} = {value}: it must lie between {low:g} and {high:g}"
+                )
+
+    def clear_memory(self) -> None:
+        """Set everything but parameters and inputs to its start value."""
+        kept = {s.field for s in signals_of(self.record) if s.causality in ("parameter", "input")}
+        for f in fields(self.record):  # type: ignore[arg-type]
+            if f.name not in kept:
+                setattr(self.record, f.name, f.default)
+
+    def attach(self, arrays: Arrays) -> None:
         """Make ``arrays`` the memory of this instance; models that give them names extend this."""
         self.arrays = arrays
 
@@ -105,6 +133,33 @@ class Instance(Generic[RecordT]):
         return hashlib.sha256(text.encode()).digest()
 
 
+def view(array: NDArray[np.float64]) -> Floats:
+    """Return a memoryview of ``array``, the form in which CPython runs the kernels."""
+    return cast(Floats, memoryview(cast(Any, array)))
+
+
+def views(arrays: TupleT) -> TupleT:
+    """Return the same named tuple of arrays with a memoryview in place of each array."""
+    return type(arrays)(*[cast(Any, view(array)) for array in arrays])
+
+
+def zeros(kind: Callable[..., TupleT], nodes: int) -> TupleT:
+    """Return a named tuple of ``kind`` with an array of ``nodes`` zeros for each field."""
+    names: tuple[str, ...] = cast(Any, kind)._fields
+    return kind(*(np.zeros(nodes) for _ in names))
+
+
+def _allowed(signal: Signal) -> tuple[float, float]:
+    if signal.kind == "Boolean":
+        return 0, 1
+    if signal.enumeration is not None:
+        return 0, len(signal.enumeration.items) - 1
+    return (
+        -inf if signal.low is None else signal.low,
+        inf if signal.high is None else signal.high,
+    )
+
+
 _HEAD = struct.Struct("<32sqq")
 
 
@@ -112,7 +167,7 @@ def _counted(lengths: list[int]) -> list[int]:
     return [len(lengths), *lengths]
 
 
-def _split(state: bytes, offset: int, lengths: tuple[int, ...]) -> tuple[NDArray[np.float64], ...]:
+def _split(state: bytes, offset: int, lengths: tuple[int, ...]) -> Arrays:
     arrays = []
     for length in lengths:
         arrays.append(np.frombuffer(state, np.float64, length, offset).copy())

@@ -9,7 +9,7 @@ from .arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from .bounds import enforce_bounds
 from .interpolation import cell_at, value_at
 from .offsets import adopt_offsets
-from .planner import plan_profile, speed_caps
+from .preparation import plan
 from .smoothing import smoothed_at
 from .state import PldfState
 from .stretch import joined_speed, source_position, stretch_factor, stretched_position
@@ -61,14 +61,8 @@ def _plan_with_offsets(
     work: Work,
     following: NextArrays,
 ) -> None:
-    speed_caps(
-        following.planned_mps,
-        route.limit_mps,
-        following.offset_mps,
-        route.curvature_per_m,
-        st.planner_lateral_accel_max_mps2,
-    )
-    plan_profile(st, following.planned_mps, following.planned_mps, work)
+    road = (route.limit_mps, following.offset_mps, route.curvature_per_m)
+    plan(st, road, following.planned_mps, work)
     for i in range(len(following.planned_mps)):
         if abs(following.planned_mps[i] - profile.planned_mps[i]) <= SAME_PLAN_MPS:
             following.planned_mps[i] = profile.planned_mps[i]

@@ -26,8 +26,8 @@ def source_position(d_stretched: float, d_n: float, alpha: float) -> float:
 def joined_speed(v: float, d: float, ends: tuple[float, float], lift_mps: float) -> float:
     """Eq. (2): return ``v`` plus the share of ``lift_mps`` that falls to ``d``.
 
-    ``ends`` is ``(d_0, d_n)``; the share is 1 at d_0 and 0 at d_n. The map of eq. (1) is affine, so the share is the same before and
-    after stretching, whatever alpha.
+    ``ends`` is ``(d_0, d_n)``; the share is 1 at d_0 and 0 at d_n. The map of eq. (1) is affine,
+    so the share is the same before and after stretching, whatever alpha.
     """
     return v + (ends[1] - d) / (ends[1] - ends[0]) * lift_mps
 

@@ -1,0 +1,206 @@
+"""The driving function as one running instance: route, store and kernel put together."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, cast
+
+import numpy as np
+
+from .instance import Arrays, Instance, Level, ModelError, views, zeros
+from .kernel import drive
+from .kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
+from .kernel.codes import (
+    INPUT_INVALID,
+    INPUT_OK,
+    LEARN_OFF,
+    OFF,
+    OFF_ROUTE,
+    POSITION_JUMP,
+    PROFILE_BASE,
+    PROFILE_LOADED,
+    PROFILE_NOT_PERSISTED,
+    PROFILE_REFUSED,
+    STANDBY,
+    XY,
+)
+from .kernel.learning import learn_drive
+from .kernel.preparation import adopt_learned, plan_base
+from .kernel.signals import text_parameter
+from .kernel.state import PldfState
+from .roads import Route, fingerprint, packed_route, read_route, route_arrays
+from .store import (
+    STORE_VARIABLE,
+    Iteration,
+    ProfileConflict,
+    ProfileRefused,
+    ProfileStore,
+    StoredProfile,
+)
+
+INPUT_TEXT: Final = {
+    INPUT_OK: "inputs are valid again",
+    INPUT_INVALID: "an input is not a finite, plausible number: mode FAULT, safe request",
+    OFF_ROUTE: "the vehicle is off the route: function inactive",
+    POSITION_JUMP: "the position jumped: function inactive until it is reactivated",
+}
+
+
+@dataclass(slots=True)
+class Files:
+    """String parameters; everything works with none of them set."""
+
+    route_file: str = text_parameter("Route file (.xodr or .csv) in place of route_id")
+    profile_store: str = text_parameter(
+        "Folder of learned profiles; empty: environment variable PLDF_PROFILE_STORE",
+        name="profile_store",
+    )
+
+
+class DrivingFunction(Instance[PldfState]):
+    """The adaptive PLDF: follows the profile of its driver and learns from every drive.
+
+    Attributes:
+        stored: what was known about this driver before the drive (None before ``initialize``).
+        learned: what this drive taught, after ``finish``; None when nothing was to be learned.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(PldfState(), Files())
+        self.stored: StoredProfile | None = None
+        self.learned: Iteration | None = None
+        self._reported = INPUT_OK
+
+    def initialize(self) -> None:
+        """Read route and profile, plan, and make the outputs valid."""
+        self.check_parameters()
+        self.clear_memory()
+        route = self._read_route()
+        if self.record.localization == XY and not route.has_line:
+            raise ModelError(
+                f"route {route.name} has no x_m and y_m, so localization must be ARC_LENGTH"
+            )
+        nodes = route.nodes
+        blank = (*zeros(ProfileArrays, nodes), *zeros(TraceArrays, nodes))
+        self.attach(cast(Arrays, (*route_arrays(route), *blank)))
+        self.record.mode = STANDBY if self.record.main_switch else OFF
+        self._reported = INPUT_OK
+        self.learned = None
+        plan_base(self.record, self.route, self.profile, self.work)
+        self.stored = self._load(fingerprint(route))
+        if self.record.apply_learned and self.stored.iterations:
+            self._follow(self.stored.iterations[-1])
+        self.refresh()
+
+    def attach(self, arrays: Arrays) -> None:
+        """Name the arrays; work space is made anew, it holds nothing between steps."""
+        super().attach(arrays)
+        if not arrays:
+            return
+        nodes = len(arrays[0])
+        profile_at = len(RouteArrays._fields)
+        trace_at = profile_at + len(ProfileArrays._fields)
+        self.route = views(RouteArrays(*arrays[:profile_at]))
+        self.profile = views(ProfileArrays(*arrays[profile_at:trace_at]))
+        self.trace = views(TraceArrays(*arrays[trace_at:]))
+        self.work = views(zeros(Work, nodes))
+        self.following = views(zeros(NextArrays, nodes))
+
+    def refresh(self) -> None:
+        """Recompute the outputs from the inputs without advancing."""
+        drive.refresh(self.record, self.route, self.profile)
+
+    def step(self, step_s: float) -> None:
+        """Advance by one communication step."""
+        drive.drive_step(self.record, self.route, self.profile, self.trace, step_s)
+        if self.record.input_state != self._reported:
+            self._reported = self.record.input_state
+            level: Level = "info" if self._reported == INPUT_OK else "warning"
+            self.report(
+                level, f"t = {1e-9 * self.record.time_ns:.3f} s: {INPUT_TEXT[self._reported]}"
+            )
+
+    def finish(self) -> None:
+        """Learn from the drive and save the profile; called once at its end."""
+        if self.record.learn == LEARN_OFF or self.record.nodes < 2 or self.stored is None:
+            return
+        learn_drive(self.record, self.route, self.profile, self.trace, self.work, self.following)
+        self.learned = next_iteration(self.record, self.following, self.stored)
+        self._save(self.learned)
+
+    def _read_route(self) -> Route:
+        if self.texts.route_file:
+            return read_route(self.texts.route_file)
+        return packed_route(self.record.route_id)
+
+    def _store(self) -> ProfileStore | None:
+        folder = self.texts.profile_store or os.environ.get(STORE_VARIABLE, "")
+        return ProfileStore(Path(folder)) if folder else None
+
+    def _load(self, route: str) -> StoredProfile:
+        """Return the stored profile, or a new one if there is none or it cannot be used."""
+        st = self.record
+        new = StoredProfile(st.driver_id, route, np.array(self.profile.base_mps))
+        store = self._store()
+        st.profile_status = PROFILE_BASE
+        if store is None:
+            st.profile_status = PROFILE_NOT_PERSISTED
+            if st.learn != LEARN_OFF or st.apply_learned:
+                self.report(
+                    "warning",
+                    "no profile store: nothing is loaded or saved. Set the parameter "
+                    f"profile_store or the environment variable {STORE_VARIABLE} to a folder.",
+                )
+            return new
+        try:
+            found = store.load(st.driver_id, route, len(new.base_mps))
+        except ModelError as refusal:
+            st.profile_status = PROFILE_REFUSED
+            self.report("warning", str(refusal))
+            return new
+        if found is None or not found.iterations:
+            return found or new
+        st.profile_status = PROFILE_LOADED
+        st.profile_iteration = len(found.iterations)
+        return found
+
+    def _follow(self, iteration: Iteration) -> None:
+        profile = self.profile
+        np.asarray(profile.learned_mps)[:] = iteration.learned_mps
+        np.asarray(profile.offset_mps)[:] = iteration.offset_mps
+        np.asarray(profile.drive)[:] = iteration.drive
+        np.asarray(profile.intervention)[:] = iteration.intervention
+        adopt_learned(self.record, self.route, profile, self.work)
+
+    def _save(self, iteration: Iteration) -> None:
+        store = self._store()
+        if store is None or self.stored is None:
+            return
+        try:
+            saved = store.append(self.stored, iteration)
+        except (ProfileConflict, ProfileRefused, ModelError, OSError) as problem:
+            self.report("error", f"profile not saved: {problem}")
+            return
+        if saved.warning:
+            self.report("warning", saved.warning)
+        self.report(
+            "info",
+            f"drive {iteration.number} learned from {iteration.interventions} pedal "
+            f"interventions, saved in {saved.path}",
+        )
+
+
+def next_iteration(st: PldfState, following: NextArrays, stored: StoredProfile) -> Iteration:
+    """Return what a finished drive leaves behind as the next iteration of ``stored``."""
+    truncated = ", last intervention truncated" if st.intervening else ""
+    return Iteration(
+        number=len(stored.iterations) + 1,
+        note=f"drive{truncated}",
+        interventions=st.drive_interventions,
+        learned_mps=np.array(following.learned_mps),
+        offset_mps=np.array(following.offset_mps),
+        drive=np.array(following.drive),
+        intervention=np.array(following.intervention),
+    )

@@ -1,0 +1,47 @@
+"""What is planned once, before a drive: base profile, open profile, and the profile to follow."""
+
+from __future__ import annotations
+
+from .arrays import Floats, ProfileArrays, RouteArrays, Work
+from .bounds import enforce_bounds
+from .hmi import find_limit_ends, find_turns
+from .planner import plan_profile, speed_caps
+from .state import PldfState
+
+
+def plan_base(st: PldfState, route: RouteArrays, profile: ProfileArrays, work: Work) -> None:
+    """Fill base and open profile, and make the base profile the one to follow."""
+    fill(work.c, 0.0)
+    fill(work.d, st.control_set_speed_max_mps)
+    plan(st, (route.limit_mps, work.c, route.curvature_per_m), profile.base_mps, work)
+    fill(work.c, 0.0)
+    plan(st, (work.d, work.c, route.curvature_per_m), profile.open_mps, work)
+    for i in range(len(profile.base_mps)):
+        profile.planned_mps[i] = profile.base_mps[i]
+        profile.learned_mps[i] = profile.base_mps[i]
+    find_limit_ends(route.limit_mps, profile.limit_end_m)
+    find_turns(profile.learned_mps, profile.turn_m)
+
+
+def adopt_learned(st: PldfState, route: RouteArrays, profile: ProfileArrays, work: Work) -> None:
+    """Make the learned profile and offsets in ``profile`` usable: plan, bounds, turns.
+
+    The bounds hold whatever was stored, since their parameters may have changed in between.
+    """
+    plan(
+        st, (route.limit_mps, profile.offset_mps, route.curvature_per_m), profile.planned_mps, work
+    )
+    enforce_bounds(st, route, profile.learned_mps, 0, len(profile.learned_mps) - 1)
+    find_turns(profile.learned_mps, profile.turn_m)
+
+
+def plan(st: PldfState, road: tuple[Floats, Floats, Floats], speed: Floats, work: Work) -> None:
+    """Fill ``speed`` with the profile under ``road``: limit and offset (m/s), curvature (1/m)."""
+    speed_caps(speed, road[0], road[1], road[2], st.planner_lateral_accel_max_mps2)
+    plan_profile(st, speed, speed, work)
+
+
+def fill(values: Floats, value: float) -> None:
+    """Set every element to ``value``."""
+    for i in range(len(values)):
+        values[i] = value
