@@ -24,7 +24,6 @@ from pythonfmu.enums import Fmi2Status  # type: ignore[import-untyped]
 from ..instance import Instance, Level, ModelError
 from ..kernel.signals import Signal, signals_of
 from .access import Access, Group
-from .checks import check_parameters
 from .phases import Phase, next_phase
 from .wrapper import follow, hold, leave_path
 
@@ -253,7 +252,6 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
     def _initialize(self) -> None:
         """Initialize a new model with what was set so far, so that repeating it starts anew."""
         follow(self.resources or "")
-        check_parameters(self.signals, self._model)
         fresh = self.create()
         carry(self.signals, self._model, fresh)
         self._ready = False

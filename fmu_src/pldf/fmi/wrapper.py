@@ -63,3 +63,6 @@ def _move(module: ModuleType, old: Path, new: Path) -> None:
         loader.path = str(moved)
     if hasattr(module, "__path__"):
         module.__path__ = [str(moved.parent)]
+    for name, value in vars(module).copy().items():  # constants such as the folder of data files
+        if isinstance(value, Path) and value.is_relative_to(old):
+            setattr(module, name, new / value.relative_to(old))

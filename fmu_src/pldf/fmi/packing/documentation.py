@@ -9,7 +9,7 @@ from string import Template
 from typing import Final
 
 from ...kernel.signals import Signal
-from ..checks import bounds
+from ..description import bounds
 from ..units import DISPLAY
 
 _PAGE: Final = Template("""<!DOCTYPE html>
