@@ -30,7 +30,9 @@ S_GAP_MAX_M: Final = 0.5
 LINE_GAP_MAX_M: Final = 1.0
 # Between roads the reference line may move by lane widths while the lanes go straight on.
 LINK_GAP_MAX_M: Final = 10.0
-_SAME: Final = 1e-9  # difference of curvature (1/m) or grade below which there is no jump
+# Differences at a border up to which there is no jump: rounding in the file, not the road.
+_SAME_CURVATURE_PER_M: Final = 1e-9
+_SAME_GRADE: Final = 1e-5
 _MERGE_M: Final = 1e-6
 
 Record = TypeVar("Record", bound=tuple[Any, ...])
@@ -215,6 +217,7 @@ def _join(pieces: list[Piece]) -> FloatArray:
                 following.element,
                 f"the line jumps by {gap:.3g} m at {start[0]:.6g} m of the route; correct x and y",
             )
-        jump = bool(np.any(np.abs(start - end)[[1, 3]] > _SAME))
+        _, curvature_jump, _, grade_jump, _, _ = np.abs(start - end)
+        jump = curvature_jump > _SAME_CURVATURE_PER_M or grade_jump > _SAME_GRADE
         parts.append(piece.columns if jump else piece.columns[:, :-1])
     return np.concatenate([*parts, pieces[-1].columns], axis=1)
