@@ -75,24 +75,37 @@ class DrivingFunction(Instance[PldfState]):
 
     def initialize(self) -> None:
         """Read route and profile, plan, and make the outputs valid."""
+        route = self._read_route()
+        self.prepare(route)
+        self.follow(self._load(fingerprint(route)))
+        self.refresh()
+
+    def prepare(self, route: Route) -> None:
+        """Start anew on ``route`` with its base profile."""
         self.check_parameters()
         self.clear_memory()
-        route = self._read_route()
         if self.record.localization == XY and not route.has_line:
             raise ModelError(
                 f"route {route.name} has no x_m and y_m, so localization must be ARC_LENGTH"
             )
-        nodes = route.nodes
-        blank = (*zeros(ProfileArrays, nodes), *zeros(TraceArrays, nodes))
+        blank = (*zeros(ProfileArrays, route.nodes), *zeros(TraceArrays, route.nodes))
         self.attach(cast(Arrays, (*route_arrays(route), *blank)))
         self.record.mode = STANDBY if self.record.main_switch else OFF
         self._reported = INPUT_OK
         self.learned = None
         plan_base(self.record, self.route, self.profile, self.work)
-        self.stored = self._load(fingerprint(route))
-        if self.record.apply_learned and self.stored.iterations:
-            self._follow(self.stored.iterations[-1])
-        self.refresh()
+
+    def follow(self, stored: StoredProfile) -> None:
+        """Build on ``stored``: drive its newest iteration, if ``apply_learned`` is set."""
+        self.stored = stored
+        self.record.profile_iteration = len(stored.iterations)
+        if self.record.apply_learned and stored.iterations:
+            newest = stored.iterations[-1]
+            np.asarray(self.profile.learned_mps)[:] = newest.learned_mps
+            np.asarray(self.profile.offset_mps)[:] = newest.offset_mps
+            np.asarray(self.profile.drive)[:] = newest.drive
+            np.asarray(self.profile.intervention)[:] = newest.intervention
+            adopt_learned(self.record, self.route, self.profile, self.work)
 
     def attach(self, arrays: Arrays) -> None:
         """Name the arrays; work space is made anew, it holds nothing between steps."""
@@ -124,11 +137,16 @@ class DrivingFunction(Instance[PldfState]):
 
     def finish(self) -> None:
         """Learn from the drive and save the profile; called once at its end."""
-        if self.record.learn == LEARN_OFF or self.record.nodes < 2 or self.stored is None:
-            return
+        if self.record.learn != LEARN_OFF and self.record.nodes >= 2 and self.stored is not None:
+            self._save(self.learn())
+
+    def learn(self) -> Iteration:
+        """Return what the drive so far leaves for the next one, as the next iteration."""
+        if self.stored is None:
+            raise ModelError("nothing to learn from before the instance was initialized")
         learn_drive(self.record, self.route, self.profile, self.trace, self.work, self.following)
         self.learned = next_iteration(self.record, self.following, self.stored)
-        self._save(self.learned)
+        return self.learned
 
     def _read_route(self) -> Route:
         if self.texts.route_file:
@@ -163,16 +181,7 @@ class DrivingFunction(Instance[PldfState]):
         if found is None or not found.iterations:
             return found or new
         st.profile_status = PROFILE_LOADED
-        st.profile_iteration = len(found.iterations)
         return found
-
-    def _follow(self, iteration: Iteration) -> None:
-        profile = self.profile
-        np.asarray(profile.learned_mps)[:] = iteration.learned_mps
-        np.asarray(profile.offset_mps)[:] = iteration.offset_mps
-        np.asarray(profile.drive)[:] = iteration.drive
-        np.asarray(profile.intervention)[:] = iteration.intervention
-        adopt_learned(self.record, self.route, profile, self.work)
 
     def _save(self, iteration: Iteration) -> None:
         store = self._store()

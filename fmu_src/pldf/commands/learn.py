@@ -1,0 +1,73 @@
+"""``pldf learn``: SPAA on a recording."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Any, Final
+
+from ..function import DrivingFunction
+from ..roads import packed_route, read_route
+from ..store import read_profile, write_profile
+from ..study.offline import Learned, explain, learn_from
+from ..study.recording import read_recording
+from .options import add_settings, apply_settings
+
+SUMMARY: Final = "Learn from the recording of a drive (SPAA) and write the next profile."
+EXAMPLE: Final = (
+    "pldf learn --route study --recording out/B1.csv --out b1.pldf\n"
+    "  pldf learn --route study --recording out/B2.csv --profile-in b1.pldf --out b2.pldf --json"
+)
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``pldf learn``."""
+    parser.add_argument(
+        "--route", required=True, help="route driven: .xodr or .csv file, or 'study'"
+    )
+    parser.add_argument(
+        "--recording",
+        required=True,
+        help="CSV with at least time_s, s_m, speed_mps and mode (OFF, STANDBY, ACTIVE, ...)",
+    )
+    parser.add_argument(
+        "--profile-in", help="profile that the drive followed (default: the route's base profile)"
+    )
+    parser.add_argument("--out", required=True, help="profile file to write (.pldf)")
+    parser.add_argument("--json", action="store_true", help="print what was learned where and why")
+    add_settings(parser)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Learn, write the profile, say what was learned."""
+    route = packed_route(0) if options.route == "study" else read_route(options.route)
+    stored = read_profile(options.profile_in) if options.profile_in else None
+    function = DrivingFunction()
+    apply_settings(function.record, options.settings)
+    learned = learn_from(read_recording(options.recording), route, stored, function)
+    write_profile(options.out, learned.profile)
+    report = explain(learned)
+    if options.json:
+        print(json.dumps(report, indent=2))
+    else:
+        _print_summary(learned, report, options.out)
+
+
+def _print_summary(learned: Learned, report: dict[str, Any], out: str) -> None:
+    rates = report["rates"]
+    print(
+        f"Rates: pedal {rates['pedal']:.1%}, set speed {rates['set_speed']:.1%}, "
+        f"combined {rates['combined']:.1%}"
+    )
+    for entry in report["interventions"]:
+        outcome = entry.get("why_not") or f"{entry['learned_m']} m learned"
+        print(
+            f"Intervention {entry['number']}: {entry['start_m']:.0f} to {entry['end_m']:.0f} m, "
+            f"{outcome}"
+        )
+    for entry in report["offsets"]:
+        print(
+            f"Set speed {3.6 * entry['offset_mps']:+.1f} km/h from {entry['start_m']} m to "
+            f"{entry['end_m']} m"
+        )
+    print(f"Iteration {learned.iteration.number} written to {out}")

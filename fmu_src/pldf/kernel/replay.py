@@ -1,0 +1,36 @@
+"""A recorded drive, row by row, through the recorder that also runs while driving."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from .arrays import Floats, RouteArrays, TraceArrays
+from .recorder import record_sample
+from .state import PldfState
+
+
+class Samples(NamedTuple):
+    """The columns of a recording that learning needs, one value per row."""
+
+    time_s: Floats
+    s_m: Floats
+    speed_mps: Floats
+    mode: Floats
+    brake_pedal: Floats
+    set_speed_mps: Floats
+    set_speed_offset_mps: Floats
+    eligible: Floats
+
+
+def replay(st: PldfState, route: RouteArrays, trace: TraceArrays, samples: Samples) -> None:
+    """Fill ``trace`` and the rates in ``st`` from ``samples``; times must increase."""
+    for k in range(len(samples.time_s)):
+        st.time_ns = int(1e9 * (samples.time_s[k] - samples.time_s[0]) + 0.5)
+        st.s_m = samples.s_m[k]
+        st.vehicle_speed_mps = samples.speed_mps[k]
+        st.mode = int(samples.mode[k])
+        st.driver_brake_pedal = samples.brake_pedal[k]
+        st.set_speed_mps = samples.set_speed_mps[k]
+        st.set_speed_offset_mps = samples.set_speed_offset_mps[k]
+        st.eligible = int(samples.eligible[k])
+        record_sample(st, route, trace)

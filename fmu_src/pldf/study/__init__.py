@@ -1,0 +1,1 @@
+"""Drives, recordings, figures and studies; never packed into an FMU."""
