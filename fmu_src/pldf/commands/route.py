@@ -1,0 +1,103 @@
+"""``pldf route``: read a road, say what is on it, draw it, export it."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import textwrap
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Final
+
+from ..roads import fingerprint, open_route, write_route_csv
+from ..study.route_facts import BINDING_MPS, RouteFacts, route_facts
+
+SUMMARY: Final = "Show a route: limits, curves and base profile of an OpenDRIVE or CSV file."
+EXAMPLE: Final = "pldf route study --plot study.png"
+
+_KMH: Final = 3.6
+_LISTED_MAX: Final = 40
+_PICTURES: Final = (".png", ".pdf", ".svg")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument(
+        "file", metavar="FILE", help="OpenDRIVE (.xodr) or route CSV; 'study' = the shipped road"
+    )
+    parser.add_argument(
+        "--plot", metavar="PNG", type=_picture, help="draw limits, curvature and base profile"
+    )
+    parser.add_argument("--export", metavar="OUT.csv", type=Path, help="write the route as CSV")
+    parser.add_argument(
+        "--start-road", metavar="ID", help="OpenDRIVE road that the route starts with"
+    )
+    parser.add_argument(
+        "--default-limit", metavar="KMH", type=_limit, help="limit where the road states none"
+    )
+
+
+def run(options: argparse.Namespace) -> None:
+    """Print the summary; draw and export if asked to."""
+    default = options.default_limit
+    route = open_route(
+        options.file,
+        start_road=options.start_road,
+        default_limit_mps=None if default is None else default / _KMH,
+    )
+    facts = route_facts(route)
+    print("\n".join(_summary(facts)))
+    if options.export is not None:
+        write_route_csv(route, options.export)
+        print(f"written      {options.export}")
+    if options.plot is not None:
+        from ..study.figures_route import draw_route  # noqa: PLC0415 (0.5 s that few calls need)
+
+        draw_route(facts, options.plot)
+        print(f"drawn        {options.plot}")
+
+
+def _summary(facts: RouteFacts) -> Iterator[str]:
+    route, time_s = facts.route, facts.driving_time_s
+    mean = (len(facts.base_mps) - 1) / time_s * _KMH
+    yield f"route        {route.name}"
+    yield f"length       {route.length_m:.1f} m" + ("" if route.has_line else ", no x and y")
+    yield from _listed("limits", [f"{s:.0f} m: {_kmh(v)}" for s, v in facts.limits])
+    yield f"curves       {len(facts.curves)} bind (over {_kmh(BINDING_MPS)} below the limit)"
+    shown = [f"{c.start_m:.0f} m: {_kmh(c.speed_mps)}, R {c.radius_m:.0f} m" for c in facts.curves]
+    if shown:
+        yield from _listed("", shown)
+    yield (f"base profile {int(time_s) // 60}:{time_s % 60:04.1f} min, mean {mean:.1f} km/h")
+    yield f"fingerprint  {fingerprint(route)}"
+
+
+def _listed(title: str, items: list[str]) -> list[str]:
+    hidden = len(items) - _LISTED_MAX
+    text = "; ".join(items[:_LISTED_MAX]) + (f"; and {hidden} more" if hidden > 0 else "")
+    # Items stay whole: their blanks become real ones only after wrapping.
+    glued = text.replace("; ", ";\0").replace(" ", "\xa0").replace("\0", " ")
+    lines = textwrap.wrap(
+        glued, 96, initial_indent=f"{title:12} ", subsequent_indent=" " * 13, break_long_words=False
+    )
+    return [line.replace("\xa0", " ") for line in lines]
+
+
+def _kmh(speed_mps: float) -> str:
+    return f"{round(speed_mps * _KMH, 1):g} km/h"
+
+
+def _picture(text: str) -> Path:
+    path = Path(text)
+    if path.suffix.lower() not in _PICTURES:
+        raise argparse.ArgumentTypeError(f"{text!r} must end in {', '.join(_PICTURES)}")
+    return path
+
+
+def _limit(text: str) -> float:
+    try:
+        limit = float(text)
+    except ValueError:
+        limit = math.nan
+    if not 0.0 < limit <= 300.0:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a speed above 0 and up to 300 km/h")
+    return limit
