@@ -1,6 +1,7 @@
 """FMU of the vehicle."""
 
 from pldf.fmi.slave import ModelSlave
+
 from vehicle_models.vehicle import LongitudinalVehicle as Vehicle
 
 

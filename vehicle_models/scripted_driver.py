@@ -1,6 +1,7 @@
 """FMU of the driver."""
 
 from pldf.fmi.slave import ModelSlave
+
 from vehicle_models.driver import ScriptedDriver as Driver
 
 

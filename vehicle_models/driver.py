@@ -1,0 +1,70 @@
+"""``ScriptedDriver``: the driver kernel with its wish or script and its messages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import cast
+
+from pldf.instance import Arrays, Instance, views, zeros
+from pldf.kernel.arrays import Work
+from pldf.roads import route_arrays
+
+from .driver_kernel import driver_start, driver_step
+from .driver_script import packed_script, read_script, script_arrays
+from .driver_state import PREFERENCE, SCRIPT, DriverState, DriverTexts
+from .script_kernel import ScriptArrays
+from .vehicle import chosen_route
+from .wish_kernel import WishArrays, prepare_wish
+
+INVALID_INPUT = (
+    "an input is not a finite number: pedals and lever are released until it is"
+    " (said once per drive)"
+)
+
+
+class ScriptedDriver(Instance[DriverState]):
+    """A driver who follows a script, or a hidden wish, or keeps hands and feet off."""
+
+    texts: DriverTexts
+
+    def __init__(self) -> None:
+        super().__init__(DriverState(), DriverTexts())
+
+    def initialize(self) -> None:
+        """Plan the wish or read the script; ModelError for an unusable route or script."""
+        self.check_parameters()
+        self.clear_memory()
+        wish, script = zeros(WishArrays, 2), zeros(ScriptArrays, 0)
+        if self.record.kind == PREFERENCE:
+            wish = self._planned_wish()
+        if self.record.kind == SCRIPT:
+            name = self.texts.script_file
+            path = Path(name) if name else packed_script(self.record.script_id)
+            script = script_arrays(read_script(path))
+        self.attach(cast(Arrays, (*wish, *script)))
+        driver_start(self.record)
+
+    def refresh(self) -> None:
+        """Do nothing: the outputs change with time only."""
+
+    def step(self, step_s: float) -> None:
+        """Advance by ``step_s`` > 0 seconds."""
+        driver_step(self.record, self._wish, self._script, step_s)
+        if self.record.invalid_input and not self.record.warned:
+            self.record.warned = 1
+            self.report("warning", INVALID_INPUT)
+
+    def attach(self, arrays: Arrays) -> None:
+        """Take over wish and script."""
+        super().attach(arrays)
+        if arrays:
+            count = len(WishArrays._fields)
+            self._wish = views(WishArrays(*arrays[:count]))
+            self._script = views(ScriptArrays(*arrays[count:]))
+
+    def _planned_wish(self) -> WishArrays:
+        route = route_arrays(chosen_route(self.record.route_id, self.texts.route_file))
+        wish = zeros(WishArrays, len(route.limit_mps))
+        work = zeros(Work, len(route.limit_mps))
+        prepare_wish(self.record, views(route), views(wish), views(work))
+        return wish

@@ -1,0 +1,100 @@
+"""The hidden wish of the preference driver as a speed over the route.
+
+Planned by the driving function's own planner, with the driver's numbers: a driver who wants what
+the function does has nothing to correct. In the numba subset (see ``pldf.kernel``).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from pldf.kernel.arrays import Floats, RouteArrays, Work
+from pldf.kernel.planner import plan_profile, speed_caps
+
+from .driver_state import DriverState
+
+# A wish below walking pace would stop the car at a very negative offset.
+SLOWEST_MPS = 2.0
+# The wish counts as its plateau this close to it.
+PLATEAU_MARGIN_MPS = 0.3
+
+
+class WishArrays(NamedTuple):
+    """What the driver knows of the route."""
+
+    wish_mps: Floats  # node: wished speed
+    limit_end_m: Floats  # node: position of the next change of the legal limit
+    straight_end_m: Floats  # node: end of the straight road driven at the plateau (itself: none)
+
+
+def prepare_wish(st: DriverState, route: RouteArrays, wish: WishArrays, work: Work) -> None:
+    """Fill ``wish`` from the route; ``work`` is scratch space of the same length."""
+    st.planner_accel_max_mps2 = st.wish_accel_max_mps2
+    st.planner_accel_min_mps2 = st.wish_accel_min_mps2
+    st.planner_jerk_max_mps3 = st.wish_jerk_max_mps3
+    _fill_limit_ends(route.limit_mps, wish.limit_end_m)
+    _fill_plateau(st, route.limit_mps, work.d)
+    for i in range(len(work.c)):
+        work.c[i] = 0.0
+    lateral = st.wish_lateral_accel_max_mps2
+    speed_caps(wish.wish_mps, work.d, work.c, route.curvature_per_m, lateral)
+    plan_profile(st, wish.wish_mps, wish.wish_mps, work)
+    _fill_straight_ends(st, route, wish)
+
+
+def _fill_plateau(st: DriverState, limit: Floats, plateau: Floats) -> None:
+    """Wished speed where only limits bind (per cell): higher limits count before their sign."""
+    for i in range(len(limit)):
+        plateau[i] = max(limit[i] + st.wish_offset_mps, SLOWEST_MPS)
+    for sign in range(1, len(limit)):
+        if limit[sign] > limit[sign - 1]:
+            _anticipate(st, limit, plateau, sign)
+
+
+def _anticipate(st: DriverState, limit: Floats, plateau: Floats, sign: int) -> None:
+    """Let the limit from cell ``sign`` on count earlier, but not before the limit it ends."""
+    before = limit[sign - 1]
+    reach = st.wish_anticipation_s * max(before + st.wish_offset_mps, SLOWEST_MPS)
+    raised = max(limit[sign] + st.wish_offset_mps, SLOWEST_MPS)
+    i = sign - 1
+    while i >= 0 and sign - i <= reach and limit[i] == before:
+        plateau[i] = raised
+        i -= 1
+
+
+def _fill_limit_ends(limit: Floats, end: Floats) -> None:
+    last = len(limit) - 1
+    end[last] = last
+    for i in range(last - 1, -1, -1):
+        end[i] = end[i + 1] if limit[i] == limit[i + 1] else i + 1.0
+
+
+def _fill_straight_ends(st: DriverState, route: RouteArrays, wish: WishArrays) -> None:
+    last = len(wish.wish_mps) - 1
+    wish.straight_end_m[last] = last
+    for i in range(last - 1, -1, -1):
+        plateau = route.limit_mps[i] + st.wish_offset_mps
+        settled = wish.wish_mps[i] > plateau - PLATEAU_MARGIN_MPS
+        straight = abs(route.curvature_per_m[i]) <= st.driver_lever_curvature_per_m
+        wish.straight_end_m[i] = wish.straight_end_m[i + 1] if settled and straight else i
+
+
+def wish_at(wish: WishArrays, s_m: float) -> float:
+    """Wished speed at ``s_m``, linear between the nodes, constant beyond both ends."""
+    last = len(wish.wish_mps) - 1
+    if s_m <= 0.0:
+        return wish.wish_mps[0]
+    if s_m >= last:
+        return wish.wish_mps[last]
+    i = int(s_m)
+    return wish.wish_mps[i] + (wish.wish_mps[i + 1] - wish.wish_mps[i]) * (s_m - i)
+
+
+def wish_acceleration(wish: WishArrays, s_m: float) -> float:
+    """Acceleration of a car that follows the wish exactly at ``s_m``; 0 beyond both ends."""
+    last = len(wish.wish_mps) - 1
+    if s_m < 0.0 or s_m >= last:
+        return 0.0
+    here = wish.wish_mps[int(s_m)]
+    there = wish.wish_mps[int(s_m) + 1]
+    return 0.5 * (there * there - here * here)
