@@ -16,7 +16,7 @@ SUMMARY: Final = "Show a route: limits, curves and base profile of an OpenDRIVE 
 EXAMPLE: Final = "pldf route study --plot study.png"
 
 _KMH: Final = 3.6
-_LISTED_MAX: Final = 40
+_LISTED_MAX: Final = 24
 _PICTURES: Final = (".png", ".pdf", ".svg")
 
 
