@@ -14,14 +14,20 @@ from time import perf_counter
 from typing import Final
 
 from fmpy.validation import validate_fmu  # type: ignore[import-untyped]
-
 from pldf.fmi.packing.builder import Package, Recipe, build
 
 ROOT: Final = Path(__file__).resolve().parent
 PLDF: Final = Package(
     ROOT / "fmu_src" / "pldf",
     # Research tools, and what builds FMUs: none of it runs inside one.
-    skip=("cli.py", "commands", "compiled.py", "study", "fmi/packing"),
+    skip=(
+        "cli.py",
+        "commands",
+        "compiled.py",
+        "study",
+        "fmi/packing",
+        "roads/make_study_road.py",
+    ),
 )
 MODELS: Final = Package(
     ROOT / "vehicle_models", skip=("longitudinal_vehicle.py", "scripted_driver.py")

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib import import_module, metadata
+from importlib import import_module, invalidate_caches, metadata
 from pathlib import Path
+from types import ModuleType
 
 from pythonfmu import FmuBuilder  # type: ignore[import-untyped]
 
@@ -93,13 +94,21 @@ def _license_of(distribution: str) -> bytes:
 
 @contextmanager
 def _importing_from(stage: Path, script: str, names: Mapping[str, str]) -> Iterator[None]:
-    """Import from ``stage`` for a while and forget it again: the next build has other names."""
+    """Import from ``stage`` for a while; nothing loaded before is used or lost."""
+    tops = {script, *names.values()}
     path = list(sys.path)
+    before = _unload(tops)
     sys.path.insert(0, str(stage))
+    invalidate_caches()
     try:
         yield
     finally:
         sys.path[:] = path
-        for name in list(sys.modules):
-            if name.partition(".")[0] in (script, *names.values()):
-                del sys.modules[name]
+        _unload(tops)
+        sys.modules.update(before)
+
+
+def _unload(tops: Set[str]) -> dict[str, ModuleType]:
+    """Take the modules below these names out of ``sys.modules`` and return them."""
+    names = [name for name in sys.modules if name.partition(".")[0] in tops]
+    return {name: sys.modules.pop(name) for name in names}
