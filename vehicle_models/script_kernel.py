@@ -22,6 +22,7 @@ AT_TIME: Final = 0
 AT_POSITION: Final = 1
 
 NS_PER_S = 1e9
+FINITE_MAX = 1e300
 
 
 class ScriptArrays(NamedTuple):
@@ -48,7 +49,7 @@ def follow_script(st: DriverState, script: ScriptArrays) -> None:
 
 def _is_due(st: DriverState, script: ScriptArrays, k: int) -> bool:
     if script.unit[k] == AT_POSITION:
-        return st.vehicle_s_m >= script.at[k]
+        return FINITE_MAX > st.vehicle_s_m >= script.at[k]
     return st.time_ns >= script.at[k] * NS_PER_S
 
 
