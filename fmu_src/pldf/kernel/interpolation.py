@@ -16,10 +16,11 @@ def cell_at(n: int, s_m: float) -> int:
 
 def value_at(values: Floats, s_m: float) -> float:
     """Return ``values`` (one per node) at ``s_m``, linear between nodes, constant outside."""
-    n = len(values)
-    i = cell_at(n, s_m)
-    if i == n - 1 or s_m <= 0.0:
-        return values[i]
+    if s_m <= 0.0:
+        return values[0]
+    i = int(s_m)
+    if i >= len(values) - 1:
+        return values[len(values) - 1]
     return values[i] + (s_m - i) * (values[i + 1] - values[i])
 
 

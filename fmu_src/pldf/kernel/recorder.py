@@ -130,14 +130,16 @@ def _advance_knots(st: PldfState, route: RouteArrays, trace: TraceArrays) -> Non
 
 
 def _write_nodes(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None:
-    """Interpolate the nodes in (from, knot]."""
+    """Interpolate the nodes in (from, knot]; most samples reach none."""
+    first = int(max(st.from_s_m, -1.0) + 1.0)
+    last = min(int(max(st.knot_s_m, -1.0) + 1.0), len(trace.speed_mps))
+    if first >= last:
+        return
     hole = _is_hole(st)
-    last = int(max(st.knot_s_m, -1.0) + 1.0)
-    last = min(last, len(trace.speed_mps))
-    for i in range(int(max(st.from_s_m, -1.0) + 1.0), last):
-        if st.nodes == 0:
-            st.first_node = i
-        st.nodes = i + 1 - st.first_node
+    if st.nodes == 0:
+        st.first_node = first
+    st.nodes = last - st.first_node
+    for i in range(first, last):
         part = (i - st.from_s_m) / (st.knot_s_m - st.from_s_m)
         speed = st.from_speed_mps + part * (st.knot_speed_mps - st.from_speed_mps)
         trace.speed_mps[i] = speed
