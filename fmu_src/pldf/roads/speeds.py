@@ -66,7 +66,7 @@ def _lane_sections(road: Element, place: Place, side: str, length_m: float) -> l
     """Return the records of every driving lane on one side, each closed at its section's end."""
     sections = [(place.number(e, "s"), e) for e in road.all("lanes", "laneSection")]
     sections.sort(key=lambda pair: pair[0])
-    ends = [start for start, _ in sections[1:]] + [length_m]
+    ends = [*(start for start, _ in sections[1:]), length_m][: len(sections)]
     lanes = []
     for (start, section), end in zip(sections, ends, strict=True):
         for lane in section.all(side, "lane"):
