@@ -11,7 +11,7 @@ from __future__ import annotations
 import struct
 import sys
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import asdict, fields
 from functools import wraps
 from math import isfinite
 from traceback import extract_tb
@@ -105,6 +105,7 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
         self._strings = Access(self.signals, frozenset({"String"}))
         self._phase = Phase.INSTANTIATED
         self._time = _NO_TIME
+        self._prepared = False  # this model was initialized
         self._ready = False  # the outputs belong to the parameters
         self._pristine = False  # nothing was set since the model was initialized
         self._stale = False  # the outputs do not belong to the inputs
@@ -234,10 +235,12 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
         if len(state) < _STATE.size or not state.startswith(_MAGIC):
             raise ModelError("these bytes are not a state of this FMU; not restored")
         _, phase, flags, stale, time = _STATE.unpack_from(state)
-        self._model.restore(state[_STATE.size :])
+        self._restore(state[_STATE.size :], Phase(phase))
         self._phase = Phase(phase)
-        self._ready, self._pristine, self._stale = bool(flags & 1), bool(flags & 2), bool(stale)
-        self._time = time
+        # Before the first step nothing is lost when the model is initialized once more.
+        stepped = self._phase >= Phase.STEPPING
+        self._ready, self._pristine = bool(flags & 1) and stepped, bool(flags & 2) and stepped
+        self._stale, self._time = bool(stale), time
 
     @staticmethod
     def _fmu_state_to_bytes(state: bytes) -> bytes:
@@ -254,11 +257,32 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
         follow(self.resources or "")
         fresh = self.create()
         carry(self.signals, self._model, fresh)
-        self._ready = False
+        self._ready = self._prepared = False
         self._model = fresh
         fresh.initialize()
-        self._ready = self._pristine = True
+        self._ready = self._pristine = self._prepared = True
         self._stale = False
+
+    def _restore(self, state: bytes, phase: Phase) -> None:
+        """Restore the model; what it holds besides its state follows from its parameters."""
+        model = self.create()
+        model.restore(state)
+        if phase is Phase.STEPPING and not (self._prepared and self._has_parameters_of(model)):
+            follow(self.resources or "")
+            model.initialize()
+            model.restore(state)
+            self._prepared = True
+            self._model = model
+        else:
+            self._model.restore(state)
+
+    def _has_parameters_of(self, other: Instance[Any]) -> bool:
+        ours = self._model
+        return asdict(ours.texts) == asdict(other.texts) and all(
+            getattr(ours.record, s.field) == getattr(other.record, s.field)
+            for s in self.signals
+            if s.causality == "parameter" and s.kind != "String"
+        )
 
     def _refresh(self) -> None:
         """Bring the outputs up to date with what was set since they were computed."""
