@@ -7,7 +7,6 @@ means the recommended 130 km/h of a derestricted motorway, because a profile nee
 
 from __future__ import annotations
 
-import math
 from bisect import bisect_right
 from dataclasses import dataclass
 from typing import Final
@@ -110,4 +109,4 @@ def _speed(element: Element, place: Place) -> float | None:
     if not 0.0 < limit <= 300.0 / 3.6:
         shown = f"{text} {unit}" + ("" if "unit" in element.attributes else " (no unit given)")
         raise place.error(element, f"speed limit {shown} must lie above 0 and up to 300 km/h")
-    return limit if math.isfinite(limit) else None
+    return limit
