@@ -107,7 +107,7 @@ def _cache_folder(modules: Sequence[ModuleType]) -> Iterator[bool]:
 
     Numba itself only notices changes in the file of the outermost function, not in its callees.
     """
-    digest = hashlib.sha256(numba.__version__.encode())
+    digest = hashlib.sha256(f"{numba.__version__} {OPTIONS}".encode())
     for module in modules:
         digest.update(inspect.getsource(module).encode())
     folder = _user_cache() / f"kernel-{digest.hexdigest()[:16]}"
