@@ -379,6 +379,7 @@ def test_a_prefix_or_default_namespace_does_not_matter(tmp_path: Path) -> None:
         ("", "line 2: no <road> in this file"),
         ("<road", "not well-formed XML"),
         (road("1", geometry(0, 100), length=0), "line 3, road 1: length 0 m"),
+        (road("1", geometry(0, 1e18), length=1e18), "line 3, road 1: length 1e.18 m is beyond"),
         (road("1", ""), "road 1: no planView/geometry"),
         (road("1", geometry(0, 100, "<circle/>")), "road 1: no line, arc, spiral"),
         (

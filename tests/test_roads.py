@@ -241,6 +241,7 @@ def test_the_fingerprint_ignores_name_line_grade_and_rounding() -> None:
         ([0, 9], [0, 0], [0, 10], "knot 0: speed_limit_mps = 0"),
         ([0, 9], [0, 0], [10, -3], "knot 1: speed_limit_mps = -3"),
         ([0, 9], [0, 0], [100, 10], "is the unit right"),
+        ([0, 1e12], [0, 0], [10, 10], "knot 1: s_m = 1e.12 is beyond 10 000 km"),
         ([0, 9], [0, 2.0], [10, 10], "tighter than 1 m"),
     ],
 )

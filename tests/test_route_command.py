@@ -17,7 +17,8 @@ Run = Callable[..., tuple[int, str, str]]
 
 NO_SPEED = (
     '<OpenDRIVE>\n<road id="{0}" length="300" junction="-1">\n<planView>'
-    '<geometry s="0" x="0" y="0" hdg="0" length="300"><line/></geometry></planView></road>\n</OpenDRIVE>\n'
+    '<geometry s="0" x="0" y="0" hdg="0" length="300"><line/></geometry>'
+    "</planView></road>\n</OpenDRIVE>\n"
 )
 
 

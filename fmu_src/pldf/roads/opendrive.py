@@ -22,7 +22,7 @@ import numpy as np
 from ..instance import ModelError
 from .chain import Leg, Network
 from .geometry import Cubic, Geometry, LinearCurvature, Pose, param_poly3, poly3
-from .route import FloatArray, Route
+from .route import LENGTH_MAX_M, FloatArray, Route
 from .speeds import limits
 from .xml_tree import Element, Place, parse_xml
 
@@ -87,6 +87,8 @@ def _read_road(leg: Leg, place: Place, default_limit_mps: float | None) -> Road:
     length = place.number(road, "length")
     if length <= 0.0:
         raise place.error(road, f"length {length:g} m; a road must be longer than 0")
+    if length > LENGTH_MAX_M:
+        raise place.error(road, f"length {length:g} m is beyond 10 000 km; is the unit right?")
     return Road(
         length,
         _geometries(road, place, length),

@@ -15,6 +15,7 @@ from ..kernel.arrays import RouteArrays
 FloatArray = NDArray[np.float64]
 
 LENGTH_MIN_M: Final = 2.0
+LENGTH_MAX_M: Final = 1e7  # ten times across a continent; a slip of a digit must not fill memory
 # A limit above this is a km/h value in a m/s field, not a road.
 LIMIT_MAX_MPS: Final = 300.0 / 3.6
 # Curves tighter than 1 m do not exist on roads; broken polynomials and kinks of a line do.
@@ -87,6 +88,7 @@ def _numeric_faults(knots: dict[str, FloatArray]) -> list[tuple[int, str]]:
     back = np.zeros_like(late)
     back[1:] = s_m[1:] < s_m[:-1]
     faults = (
+        _first(s_m > LENGTH_MAX_M, "s_m = {s_m:g} is beyond 10 000 km; is the unit right?"),
         _first(late, "s_m starts at {s_m:g}; it must start at 0 (subtract {s_m:g} everywhere)"),
         _first(back, "s_m = {s_m:g} lies before the previous one; sort the route by s_m"),
         _first(thrice, "s_m = {s_m:g} for the third time; two equal values make a jump"),
