@@ -7,7 +7,7 @@ import json
 from typing import Any, Final
 
 from ..function import DrivingFunction
-from ..roads import packed_route, read_route
+from ..roads import open_route
 from ..store import read_profile, write_profile
 from ..study.offline import Learned, explain, learn_from
 from ..study.recording import read_recording
@@ -40,7 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Learn, write the profile, say what was learned."""
-    route = packed_route(0) if options.route == "study" else read_route(options.route)
+    route = open_route(options.route)
     stored = read_profile(options.profile_in) if options.profile_in else None
     function = DrivingFunction()
     apply_settings(function.record, options.settings)
