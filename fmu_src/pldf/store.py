@@ -147,6 +147,11 @@ class ProfileStore:
         """Return all profile files by name, those of conflicts included; none of them is read."""
         return sorted(self.folder.glob(f"*{_SUFFIX}"))
 
+    def files_of(self, driver_id: int) -> list[Path]:
+        """Return the profile files of one driver, one per route, without those of conflicts."""
+        files = self.folder.glob(f"driver-{driver_id:06d}_route-*{_SUFFIX}")
+        return sorted(file for file in files if ".conflict-" not in file.name)
+
     def refused(self) -> list[Path]:
         """Return the files that were put aside because they could not be used."""
         return sorted(self.folder.glob(f"*{_SUFFIX}.refused-*"))

@@ -1,0 +1,240 @@
+"""``pldf profiles``: look at what was learned, take it elsewhere, go back to an older state."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from ..instance import ModelError
+from ..store import (
+    STORE_VARIABLE,
+    ProfileRefused,
+    ProfileStore,
+    StoredProfile,
+    read_profile,
+    rollback_profile,
+)
+from ..stored_profile import Floats, Iteration
+
+SUMMARY: Final = "Show, export and roll back what was learned for drivers and routes."
+EXAMPLE: Final = """pldf profiles list --store profiles
+  pldf profiles show profiles/driver-000017_route-0123456789abcdef.pldf --plot profile.png
+  pldf profiles history 17 --store profiles
+  pldf profiles export 17 --store profiles --out learned.csv
+  pldf profiles rollback 17 --store profiles --to 2
+
+All but 'list' take a profile file or, with a store, the number of a driver."""
+
+_KMH_PER_MPS: Final = 3.6
+_SHOWN_MPS: Final = 0.1 / _KMH_PER_MPS  # smaller differences round to nothing in the tables
+_EXAMPLES: Final = {
+    "list": "pldf profiles list --store profiles",
+    "show": "pldf profiles show 17 --store profiles --plot profile.png",
+    "history": "pldf profiles history 17 --store profiles",
+    "export": "pldf profiles export driver-000017_route-0123456789abcdef.pldf --iteration 2",
+    "rollback": "pldf profiles rollback 17 --store profiles --to 2",
+}
+
+Action = Callable[[argparse.Namespace], None]
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the actions and their arguments."""
+    actions = parser.add_subparsers(metavar="ACTION", required=True)
+    _action(actions, "list", "list the profiles of a store", _list)
+    show = _action(actions, "show", "show where the profile differs from its base", _show)
+    _action(actions, "history", "show what each drive changed", _history)
+    export = _action(actions, "export", "print s_m,base_mps,learned_mps,offset_mps as CSV", _export)
+    rollback = _action(actions, "rollback", "make an older state the newest one", _rollback)
+    show.add_argument("--plot", metavar="PNG", type=Path, help="draw base and learned speed")
+    for command in (show, export):
+        command.add_argument(
+            "--iteration", metavar="N", type=int, help="state after drive N, 0 = base (newest)"
+        )
+    export.add_argument("--out", metavar="CSV", type=Path, help="write to this file (stdout)")
+    rollback.add_argument(
+        "--to", metavar="N", type=int, required=True, help="iteration to go back to, 0 = base"
+    )
+
+
+def run(options: argparse.Namespace) -> None:
+    """Do the chosen action.
+
+    Raises:
+        ModelError: a file, driver or iteration does not exist or cannot be used.
+    """
+    options.action(options)
+
+
+def _action(
+    actions: argparse._SubParsersAction[argparse.ArgumentParser],
+    name: str,
+    summary: str,
+    action: Action,
+) -> argparse.ArgumentParser:
+    parser = actions.add_parser(
+        name,
+        help=summary,
+        description=f"{summary.capitalize()}.",
+        epilog=f"example:\n  {_EXAMPLES[name]}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    if name != "list":
+        parser.add_argument("file", metavar="FILE", help="profile file, or driver number in STORE")
+    parser.add_argument(
+        "--store", metavar="FOLDER", help=f"profile store (environment: {STORE_VARIABLE})"
+    )
+    parser.set_defaults(action=action, wrong_usage=parser.error)
+    return parser
+
+
+def _store(options: argparse.Namespace) -> ProfileStore:
+    folder: str = options.store or os.environ.get(STORE_VARIABLE, "")
+    if not folder:
+        options.wrong_usage(f"give --store FOLDER, or set {STORE_VARIABLE}")
+    if not os.path.isdir(folder):
+        raise ModelError(f"{folder}: no such folder; give the profile store with --store")
+    return ProfileStore(folder)
+
+
+def _path(options: argparse.Namespace) -> Path:
+    path = Path(options.file)
+    if path.exists() or not re.fullmatch("[0-9]{1,9}", options.file):
+        return path
+    store = _store(options)
+    files = store.files_of(int(options.file))
+    if not files:
+        raise ModelError(f"{store.folder}: no profile of driver {options.file}")
+    if len(files) > 1:
+        names = ", ".join(file.name for file in files)
+        raise ModelError(f"driver {options.file} has {len(files)} profiles, name one: {names}")
+    return files[0]
+
+
+def _list(options: argparse.Namespace) -> None:
+    store = _store(options)
+    print(f"{'driver':>9}  {'route':16}  {'length m':>8}  {'iterations':>10}  file")
+    for path in store.files():
+        try:
+            profile = read_profile(path)
+        except ProfileRefused as refusal:
+            print(f"pldf: {refusal}", file=sys.stderr)
+            continue
+        print(
+            f"{profile.driver_id:9}  {profile.route}  {profile.nodes - 1:8}  "
+            f"{len(profile.iterations):10}  {path}"
+        )
+    for path in store.refused():
+        print(f"pldf: {path}: put aside because it could not be used", file=sys.stderr)
+
+
+def _show(options: argparse.Namespace) -> None:
+    path = _path(options)
+    profile = read_profile(path)
+    iteration = profile.iteration(options.iteration)
+    print(f"driver     {profile.driver_id}")
+    print(f"route      {profile.route}, {profile.nodes - 1} m")
+    print(f"iteration  {iteration.number} of {len(profile.iterations)}: {iteration.note}")
+    _print_places("learned minus base speed", iteration.learned_mps - profile.base_mps)
+    _print_places("learned offset of the set speed", iteration.offset_mps)
+    if options.plot is not None:
+        _plot(options.plot, profile, iteration)
+        print(f"plot       {options.plot}")
+
+
+def _print_places(title: str, difference_mps: Floats) -> None:
+    places = _runs(np.abs(difference_mps) > _SHOWN_MPS)
+    if not places:
+        print(f"{title}: none")
+        return
+    print(f"{title}:\n{'from m':>9} {'to m':>9} {'mean km/h':>10} {'peak km/h':>10}")
+    for first, last in places:
+        kmh = difference_mps[first : last + 1] * _KMH_PER_MPS
+        peak = kmh[np.argmax(np.abs(kmh))]
+        print(f"{first:9} {last:9} {kmh.mean():+10.1f} {peak:+10.1f}")
+
+
+def _runs(flags: np.ndarray[tuple[int], np.dtype[np.bool]]) -> list[tuple[int, int]]:
+    """Return first and last index of each run of true values."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False]))))
+    return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def _history(options: argparse.Namespace) -> None:
+    profile = read_profile(_path(options))
+    print("change of the learned speed against the iteration before, as absolute values")
+    print(
+        f"{'iteration':>9} {'interventions':>13} {'changed m':>9} "
+        f"{'mean km/h':>9} {'max km/h':>9}  note"
+    )
+    for iteration in profile.iterations:
+        before = profile.iteration(iteration.number - 1)
+        kmh = np.abs(iteration.learned_mps - before.learned_mps) * _KMH_PER_MPS
+        changed = int(np.count_nonzero(kmh > _SHOWN_MPS * _KMH_PER_MPS))
+        print(
+            f"{iteration.number:9} {iteration.interventions:13} {changed:9} "
+            f"{kmh.mean():9.2f} {kmh.max():9.2f}  {iteration.note}"
+        )
+
+
+def _export(options: argparse.Namespace) -> None:
+    profile = read_profile(_path(options))
+    iteration = profile.iteration(options.iteration)
+    columns = (
+        np.arange(profile.nodes, dtype=np.float64),
+        profile.base_mps,
+        iteration.learned_mps,
+        iteration.offset_mps,
+    )
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    lines = ["s_m,base_mps,learned_mps,offset_mps", *(",".join(map(repr, row)) for row in rows)]
+    text = "\n".join(lines) + "\n"
+    if options.out is None:
+        _print_text(text)
+        return
+    try:
+        options.out.write_text(text, encoding="ascii", newline="\n")
+    except OSError as error:
+        raise ModelError(f"{options.out}: cannot be written ({error.strerror})") from error
+
+
+def _print_text(text: str) -> None:
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:  # the reader (head, a pager) has seen enough; that is no error
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _rollback(options: argparse.Namespace) -> None:
+    path = _path(options)
+    profile = rollback_profile(path, options.to)
+    print(f"{path}: iteration {len(profile.iterations)} is now a copy of iteration {options.to}")
+
+
+def _plot(path: Path, profile: StoredProfile, iteration: Iteration) -> None:
+    from matplotlib.figure import Figure  # noqa: PLC0415 - slow to import, rarely needed
+
+    figure = Figure(figsize=(10, 4), layout="constrained")
+    axes = figure.subplots()
+    kilometres = np.arange(profile.nodes) / 1000.0
+    for label, speed_mps in (("base", profile.base_mps), ("learned", iteration.learned_mps)):
+        axes.plot(kilometres, speed_mps * _KMH_PER_MPS, label=label, linewidth=1.2)
+    axes.set(
+        xlabel="distance in km",
+        ylabel="speed in km/h",
+        title=f"Driver {profile.driver_id}, route {profile.route}, iteration {iteration.number}",
+    )
+    axes.grid(alpha=0.3)
+    axes.legend()
+    try:
+        figure.savefig(path, dpi=120)
+    except (OSError, ValueError) as error:  # ValueError: a file type that is unknown
+        raise ModelError(f"{path}: cannot be written ({error})") from error
