@@ -33,6 +33,7 @@ class Watch:
         self.request = car.made.record.acceleration_request_mps2
 
     def step(self, step_s: float, **inputs: float) -> None:
+        """One step of the car, checked."""
         self.car.step(step_s, **inputs)
         request = self.car.made.record.acceleration_request_mps2
         assert REQUEST_MIN - ROUNDING <= request <= REQUEST_MAX + ROUNDING
@@ -92,7 +93,7 @@ def test_request_glides_to_zero_during_an_override() -> None:
 
 @pytest.mark.parametrize(
     ("step_s", "lag_s", "tolerance_mps"),
-    [(0.01, 0.0, 0.1), (0.01, 0.3, 0.1), (0.1, 0.3, 0.25), (0.01, 0.6, 0.35)],
+    [(0.01, 0.0, 0.1), (0.01, 0.3, 0.1), (0.1, 0.3, 0.25), (0.01, 0.6, 0.4)],
 )
 def test_tracks_the_base_profile_of_the_study_road(
     step_s: float, lag_s: float, tolerance_mps: float
