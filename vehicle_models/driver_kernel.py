@@ -38,6 +38,8 @@ PATIENCE_ATTEMPTS = 3
 UNDER_WAY_MPS2 = 0.3
 # The lever is used when the car is this close to the set speed.
 SETTLED_MPS = 1.0
+# The wish counts as its plateau this close to it: nothing but the limit binds it.
+PLATEAU_MARGIN_MPS = 0.3
 MINSTD_FACTOR = 48271.0
 MINSTD_MODULUS = 2147483647.0
 
@@ -211,8 +213,10 @@ def _lever_will_do(st: DriverState, wish: WishArrays) -> bool:
     last = len(wish.limit_end_m) - 1
     i = int(max(0.0, min(st.vehicle_s_m, last)))
     speed = st.vehicle_speed_mps
+    plateau = st.limit_mps + st.wish_offset_mps
     return (
-        wish.limit_end_m[i] - st.vehicle_s_m > speed * st.driver_lever_limit_s
+        abs(wish.wish_mps[i] - plateau) < PLATEAU_MARGIN_MPS
+        and wish.limit_end_m[i] - st.vehicle_s_m > speed * st.driver_lever_limit_s
         and wish.straight_end_m[i] - st.vehicle_s_m > speed * st.driver_lever_straight_s
     )
 

@@ -83,7 +83,7 @@ def read_script(path: Path) -> list[Event]:
 def script_arrays(events: list[Event]) -> ScriptArrays:
     """Return these events as arrays for the kernel, none of them begun."""
     columns = [np.array(column, dtype=np.float64) for column in zip(*events, strict=True)]
-    return ScriptArrays(*columns, np.full(len(events), -1.0))
+    return ScriptArrays(*(*columns, np.full(len(events), -1.0)))
 
 
 def _columns(where: str, header: list[str]) -> dict[str, int]:

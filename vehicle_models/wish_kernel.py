@@ -15,8 +15,6 @@ from .driver_state import DriverState
 
 # A wish below walking pace would stop the car at a very negative offset.
 SLOWEST_MPS = 2.0
-# The wish counts as its plateau this close to it.
-PLATEAU_MARGIN_MPS = 0.3
 
 
 class WishArrays(NamedTuple):
@@ -24,7 +22,7 @@ class WishArrays(NamedTuple):
 
     wish_mps: Floats  # node: wished speed
     limit_end_m: Floats  # node: position of the next change of the legal limit
-    straight_end_m: Floats  # node: end of the straight road driven at the plateau (itself: none)
+    straight_end_m: Floats  # node: end of the straight road (the node itself: not straight)
 
 
 def prepare_wish(st: DriverState, route: RouteArrays, wish: WishArrays, work: Work) -> None:
@@ -39,7 +37,7 @@ def prepare_wish(st: DriverState, route: RouteArrays, wish: WishArrays, work: Wo
     lateral = st.wish_lateral_accel_max_mps2
     speed_caps(wish.wish_mps, work.d, work.c, route.curvature_per_m, lateral)
     plan_profile(st, wish.wish_mps, wish.wish_mps, work)
-    _fill_straight_ends(st, route, wish)
+    _fill_straight_ends(st, route.curvature_per_m, wish.straight_end_m)
 
 
 def _fill_plateau(st: DriverState, limit: Floats, plateau: Floats) -> None:
@@ -69,14 +67,12 @@ def _fill_limit_ends(limit: Floats, end: Floats) -> None:
         end[i] = end[i + 1] if limit[i] == limit[i + 1] else i + 1.0
 
 
-def _fill_straight_ends(st: DriverState, route: RouteArrays, wish: WishArrays) -> None:
-    last = len(wish.wish_mps) - 1
-    wish.straight_end_m[last] = last
+def _fill_straight_ends(st: DriverState, curvature: Floats, end: Floats) -> None:
+    last = len(end) - 1
+    end[last] = last
     for i in range(last - 1, -1, -1):
-        plateau = route.limit_mps[i] + st.wish_offset_mps
-        settled = wish.wish_mps[i] > plateau - PLATEAU_MARGIN_MPS
-        straight = abs(route.curvature_per_m[i]) <= st.driver_lever_curvature_per_m
-        wish.straight_end_m[i] = wish.straight_end_m[i + 1] if settled and straight else i
+        straight = abs(curvature[i]) <= st.driver_lever_curvature_per_m
+        end[i] = end[i + 1] if straight else i
 
 
 def wish_at(wish: WishArrays, s_m: float) -> float:
