@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from fmpy import extract, read_model_description  # type: ignore[import-untyped]
 from fmpy.fmi2 import FMU2Slave  # type: ignore[import-untyped]
+from pldf.fmi.wrapper import release_at_exit
 
 _CALLS = {"Real": "Real", "Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean"}
 
@@ -30,9 +31,12 @@ def time_fmu(path: Path, inputs: dict[str, float], steps: int = 2000) -> FmuTime
         steps: number of steps of 10 ms.
     """
     description = read_model_description(str(path))
+    folder = Path(extract(str(path)))
+    for library in folder.glob("binaries/linux64/*.so"):
+        release_at_exit(library)  # the empty FMU is stock pythonfmu
     slave = FMU2Slave(
         guid=description.guid,
-        unzipDirectory=str(extract(str(path))),
+        unzipDirectory=str(folder),
         modelIdentifier=description.coSimulation.modelIdentifier,
     )
     began = perf_counter()

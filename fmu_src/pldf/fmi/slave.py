@@ -14,6 +14,7 @@ from collections.abc import Callable
 from dataclasses import asdict, fields
 from functools import wraps
 from math import isfinite
+from pathlib import Path
 from traceback import extract_tb
 from typing import Any, ClassVar, Concatenate, Final, ParamSpec, TypeVar
 from xml.etree.ElementTree import Element
@@ -25,7 +26,7 @@ from ..instance import Instance, Level, ModelError
 from ..kernel.signals import Signal, signals_of
 from .access import Access, Group
 from .phases import Phase, next_phase
-from .wrapper import follow, hold, leave_path
+from .wrapper import follow, hold, leave_path, release_at_exit
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -97,6 +98,7 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
         super().__init__(**{"instance_name": "", **kwargs})
         if "logger" in kwargs:  # called by the wrapper, not by pythonfmu's builder
             leave_path(self.resources)
+            self._release_at_exit()
         self._model = self.create()
         self.signals = model_signals(self._model)
         self._reals = Access(self.signals, frozenset({"Real"}))
@@ -251,6 +253,11 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
         return state
 
     # Helpers
+
+    def _release_at_exit(self) -> None:
+        library = Path(self.resources).parent / "binaries" / "linux64" / f"{type(self).__name__}.so"
+        if library.is_file():
+            release_at_exit(library)
 
     def _initialize(self) -> None:
         """Initialize a new model with what was set so far, so that repeating it starts anew."""

@@ -7,17 +7,21 @@ Read from its source (PySlaveInstance.cpp) and measured:
   raises must therefore hand over one more reference of each (``hold``).
 - Every instantiation gives up a reference to the slave module's dictionary that it never owned.
 - It puts ``resources/`` in front of ``sys.path`` at every instantiation and never removes it.
+- On Linux it releases a global object twice when the process ends (first the C++ runtime, then its
+  own destructor function), which now and then aborts a process that has done all its work.
 - Modules stay loaded when the FMU is unloaded. The next instance, unpacked elsewhere, gets the
   modules of the first one, whose folder may be gone by then: data files and late imports fail.
 """
 
 from __future__ import annotations
 
+import atexit
 import ctypes
 import sys
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
+from typing import Final
 
 
 def hold(*objects: object) -> None:
@@ -29,6 +33,21 @@ def hold(*objects: object) -> None:
 def leave_path(folder: str) -> None:
     """Remove ``folder`` from ``sys.path``: the host must not import the FMU's packages."""
     sys.path[:] = [entry for entry in sys.path if entry != folder]
+
+
+def release_at_exit(library: Path) -> None:
+    """Let the wrapper release its global object before the C++ runtime does.
+
+    Only where Python was started by its own command: in any other host the object owns Python.
+    """
+    if sys.platform == "linux" and sys.orig_argv and str(library) not in _RELEASED:
+        _RELEASED.add(str(library))
+        release = getattr(ctypes.CDLL(str(library)), "finalizePythonInterpreter", None)
+        if release is not None:
+            atexit.register(release)
+
+
+_RELEASED: Final[set[str]] = set()
 
 
 def follow(resources: str) -> None:
