@@ -1,0 +1,150 @@
+"""What the commands that drive the coupled FMUs share: arguments, settings, progress, messages."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Final
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from ..instance import ModelError
+from ..study.fmu import Fmu, Said, Value
+from ..study.master import STEP_S, connections
+from .options import parse_value
+
+_INTEGER_MAX: Final = 2**31 - 1  # of an FMI Integer
+_NEAR_MAX: Final = 3
+
+# part -> variable -> value
+Chosen = dict[str, dict[str, Value]]
+
+
+def add_coupling(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments that say which FMUs drive, for whom and how."""
+    parser.add_argument(
+        "--route", default="study",
+        help="route file (.xodr or .csv), or number of a packed route (default: the study road)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--driver-id", type=_whole, default=1, metavar="N", help="whose profile (default: 1)"
+    )
+    parser.add_argument(
+        "--seed", type=_whole, default=1, metavar="N",
+        help="seed of the driver's small irregularities (default: 1)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--step", type=_step, default=STEP_S, metavar="S",
+        help="communication step in seconds (default: 0.01)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--fmus", type=Path, default=Path("dist"), metavar="FOLDER",
+        help="where build_fmu.py put the FMUs (default: dist)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--set", dest="settings", metavar="FMU.VARIABLE=VALUE", action="append", default=[],
+        help="set a parameter, e.g. driver.wish.offset_mps=2 or pldf.learning.weight=0.4; FMU is "
+        "pldf, vehicle or driver and may be left out where the name is clear (repeatable)",
+    )  # fmt: skip
+
+
+def chosen_values(fmus: Mapping[str, Fmu], settings: list[str]) -> Chosen:
+    """Return the values of ``--set`` by part and variable; ModelError if one cannot be set."""
+    settable = _settable(fmus)
+    chosen: Chosen = {}
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        places = settable.get(name, [])
+        if not places or not equals:
+            raise ModelError(f"--set {setting}: {_way_out(name, settable, equals)}")
+        if len(places) > 1:
+            choices = ", ".join(f"{part}.{variable}" for part, variable in places)
+            raise ModelError(f"--set {setting}: more than one FMU has it, write one of {choices}")
+        part, variable = places[0]
+        chosen.setdefault(part, {})[variable] = _value(fmus[part], variable, text)
+    return chosen
+
+
+def _settable(fmus: Mapping[str, Fmu]) -> dict[str, list[tuple[str, str]]]:
+    """Return (part, variable) by every name that a person may use; more than one: ambiguous."""
+    fed = {connection.target for connection in connections(fmus)}
+    names: dict[str, list[tuple[str, str]]] = {}
+    for part, fmu in fmus.items():
+        for signal in (*fmu.named("parameter"), *fmu.named("input")):
+            place = (part, signal.name)
+            if place not in fed:
+                names.setdefault(signal.name, []).append(place)
+                names[f"{part}.{signal.name}"] = [place]
+    return names
+
+
+def _way_out(name: str, settable: Mapping[str, object], equals: str) -> str:
+    if name in settable and not equals:
+        return f"write {name}=VALUE"
+    near = get_close_matches(name, settable, n=_NEAR_MAX, cutoff=0.5)
+    hint = f"did you mean {', '.join(near)}?" if near else "write e.g. pldf.learning.weight=0.4"
+    return f"no such parameter; {hint}"
+
+
+def _value(fmu: Fmu, variable: str, text: str) -> Value:
+    signal = fmu.signals[variable]
+    if signal.kind == "String":
+        return text
+    value = parse_value(signal, text)
+    if signal.kind != "Real" and abs(value) > _INTEGER_MAX:
+        raise ModelError(f"{variable} = {text}: it must lie within {_INTEGER_MAX} of 0")
+    return value
+
+
+@contextmanager
+def progress_bar(total_m: float) -> Iterator[Progress]:
+    """Show a bar on stderr while driving; nothing when stderr is not a terminal."""
+    console = Console(file=sys.stderr)
+    with Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed:.2f} of {task.total:.2f} km"),
+        TimeElapsedColumn(),
+        console=console,
+        transient=True,
+        disable=not console.is_terminal,
+        redirect_stdout=False,
+        redirect_stderr=False,
+    ) as bar:
+        bar.add_task("", total=total_m / 1000.0)
+        yield bar
+
+
+def tell(said: Iterable[Said]) -> None:
+    """Print what the FMUs warned of, once, on stderr."""
+    for message in dict.fromkeys(said):
+        if message.level == "warning":
+            print(f"pldf: {message.part}: {message.text}", file=sys.stderr)
+
+
+def require_no_errors(said: Iterable[Said]) -> None:
+    """Raise ModelError with the first error that an FMU reported and survived."""
+    for message in said:
+        if message.level == "error":
+            raise ModelError(f"{message.part}: {message.text}")
+
+
+def _whole(text: str) -> int:
+    if not text.isdigit() or int(text) > 999_999_999:  # range of the FMUs' parameters
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to 999999999")
+    return int(text)
+
+
+def _step(text: str) -> float:
+    try:
+        step = float(text)
+    except ValueError:
+        step = 0.0
+    if not 1e-4 <= step <= 0.1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a step from 0.0001 to 0.1 s")
+    return step

@@ -1,0 +1,166 @@
+"""``pldf drive``: one drive of the three coupled FMUs."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from ..instance import ModelError
+from ..kernel.codes import LEARN
+from ..roads import fingerprint
+from ..store import STORE_VARIABLE, ProfileStore
+from ..study.fmu import Value
+from ..study.master import Drive, drive, unpacked
+from ..study.phases import PHASES, SCRIPT, Phase, Setting, choose_route, values_of
+from ..study.recording import write_recording
+from .coupled import add_coupling, chosen_values, progress_bar, require_no_errors, tell
+
+SUMMARY: Final = "Drive once with the coupled FMUs; write the recording and a picture of it."
+EXAMPLE: Final = (
+    "pldf drive --phase A2 --store profiles --out out/A2.csv\n"
+    "  pldf drive --phase B1 --store profiles --out out/B1.csv --set driver.wish.offset_mps=3\n"
+    "  pldf drive --driver script --script my_drive.csv --route road.xodr"
+)
+
+_KMH: Final = 3.6
+_CHANGED_MPS: Final = 0.1 / _KMH  # smaller changes do not count as learned
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``pldf drive``."""
+    parser.add_argument(
+        "--phase", choices=list(PHASES),
+        help="drive of the study: sets --apply, --learn and --driver",
+    )  # fmt: skip
+    parser.add_argument(
+        "--apply", action=argparse.BooleanOptionalAction, default=None,
+        help="drive the learned profile, or the base profile (default: learned)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--learn", choices=LEARN.items, help="what is learned from the drive (default: OFF)"
+    )
+    parser.add_argument(
+        "--store", type=Path, metavar="FOLDER",
+        help=f"folder of learned profiles (default: the environment variable {STORE_VARIABLE})",
+    )  # fmt: skip
+    parser.add_argument(
+        "--driver", choices=("preference", "script", "none"),
+        help="who intervenes: a hidden wish, a script, nobody (default: preference)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--script", type=Path, metavar="CSV", help="driver script, implies --driver script"
+    )
+    parser.add_argument(
+        "--out", type=Path, default=Path("out"), metavar="PATH",
+        help="recording (.csv), or folder for drive.csv (default: out)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--plot", type=Path, metavar="PNG", help="picture (default: beside the recording)"
+    )
+    add_coupling(parser)
+    parser.set_defaults(wrong_usage=parser.error)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Drive, write recording and picture, print rates and what was learned."""
+    phase = _phase(options)
+    route, road = choose_route(options.route)
+    csv = options.out if options.out.suffix.lower() == ".csv" else options.out / "drive.csv"
+    with unpacked(options.fmus) as fmus:
+        setting = Setting(
+            route, road, options.driver_id, options.seed, options.store, options.step,
+            _with_script(options, chosen_values(fmus, options.settings)),
+        )  # fmt: skip
+        with progress_bar(route.length_m) as bar:
+            course = setting.course(lambda s_m: bar.update(bar.task_ids[0], completed=s_m / 1e3))
+            driven = drive(fmus, values_of(phase, setting), course)
+    csv.parent.mkdir(parents=True, exist_ok=True)
+    write_recording(csv, driven.recording)
+    tell(driven.said)
+    print(f"recording  {csv}")
+    _plot(options.plot or csv.with_suffix(".png"), driven, phase.name)
+    _print_rates(driven)
+    require_no_errors(driven.said)
+    if phase.learn:
+        _print_learned(setting)
+    if not driven.arrived:
+        raise ModelError(f"the drive was given up: the vehicle {driven.ending}")
+
+
+def _phase(options: argparse.Namespace) -> Phase:
+    """Return the phase asked for; wrong usage if the options contradict each other."""
+    if options.phase and (options.apply is not None or options.learn):
+        options.wrong_usage("--phase sets --apply and --learn; leave out one or the other")
+    if options.script and options.driver not in (None, "script"):
+        options.wrong_usage(f"--script needs --driver script, not {options.driver}")
+    driver = options.driver or ("script" if options.script else "")
+    if options.phase:
+        phase = PHASES[options.phase]
+        return phase._replace(intervenes=driver != "none") if driver else phase
+    return Phase(
+        name="Drive",
+        apply_learned=options.apply is not False,
+        learn=options.learn == "FAITHFUL",
+        intervenes=driver != "none",
+    )
+
+
+def _with_script(
+    options: argparse.Namespace, more: dict[str, dict[str, Value]]
+) -> dict[str, dict[str, Value]]:
+    if options.driver != "script" and not options.script:
+        return more
+    script: dict[str, Value] = {"kind": SCRIPT}
+    if options.script:
+        script["script_file"] = str(options.script.resolve())
+    return {**more, "driver": {**script, **more.get("driver", {})}}
+
+
+def _plot(path: Path, driven: Drive, name: str) -> None:
+    from ..study.figures import figure_of, save  # noqa: PLC0415 - slow to import, not always used
+
+    rates = driven.outputs
+    title = f"{name}: interventions in {100 * rates['rate.combined']:.0f} % of the time"
+    save(figure_of({name: driven.recording}, title), path)
+    print(f"picture    {path}")
+
+
+def _print_rates(driven: Drive) -> None:
+    time_s = float(driven.recording["time_s"][-1])
+    rates = driven.outputs
+    print(f"time       {int(time_s) // 60}:{time_s % 60:04.1f} min, {driven.ending}")
+    print(
+        f"rates      pedal {rates['rate.pedal']:.1%}, set speed {rates['rate.set_speed']:.1%}, "
+        f"combined {rates['rate.combined']:.1%}"
+    )
+    print(f"pedal      {rates['drive.interventions']:.0f} interventions")
+
+
+def _print_learned(setting: Setting) -> None:
+    folder = setting.store or os.environ.get(STORE_VARIABLE, "")
+    if not folder:
+        print("learned    nothing kept: there is no profile store")
+        return
+    pldf = setting.more.get("pldf", {})
+    driver_id = int(pldf.get("driver_id", setting.driver_id))
+    store = ProfileStore(str(pldf.get("profile_store", folder)))
+    profile = store.load(driver_id, fingerprint(setting.route), setting.route.nodes)
+    if profile is None or not profile.iterations:
+        print(f"learned    nothing in {folder}")
+        return
+    number = len(profile.iterations)
+    before = profile.iteration(number - 1).learned_mps
+    change = profile.iteration().learned_mps - before
+    changed = change[np.abs(change) > _CHANGED_MPS]
+    print(f"learned    {len(changed)} m as drive {number}", end="")
+    if len(changed):
+        largest = changed[np.argmax(np.abs(changed))]
+        print(
+            f", on average {_KMH * np.mean(changed):+.1f} km/h, at most {_KMH * largest:+.1f} km/h",
+            end="",
+        )
+    print(f"\nprofile    {store.path(driver_id, fingerprint(setting.route))}")

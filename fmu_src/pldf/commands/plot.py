@@ -1,0 +1,83 @@
+"""``pldf plot``: pictures of recordings."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+from ..function import DrivingFunction
+from ..instance import ModelError
+from ..store import read_profile
+from ..study.interventions import rates_of
+from ..study.phases import choose_route
+from ..study.recording import Recording, completed, read_recording
+
+SUMMARY: Final = "Draw recordings: speed over distance, interventions, pedals."
+EXAMPLE: Final = (
+    "pldf plot out/recordings/B1.csv --out b1.png\n"
+    "  pldf plot out/recordings/A1.csv out/recordings/B2.csv --out compared.png"
+)
+
+_NEEDED: Final = ("limit_mps", "base_mps", "profile_mps", "set_speed_offset_mps")
+_COMPARED_MAX: Final = 7  # as many colours can be told apart
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``pldf plot``."""
+    parser.add_argument(
+        "recordings", metavar="RECORDING.csv", nargs="+", type=Path, help="one, or up to 7 compared"
+    )
+    parser.add_argument(
+        "--profile", type=Path, metavar="P.pldf", help="draw the newest state of this profile too"
+    )
+    parser.add_argument(
+        "--route", help="route driven, for recordings without limits: .xodr or .csv, or 'study'"
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="PNG", help="picture (default: beside the first recording)"
+    )
+    parser.set_defaults(wrong_usage=parser.error)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Draw the picture and say where it is."""
+    from ..study.figures import figure_of, save  # noqa: PLC0415 - slow to import, rarely needed
+
+    if len(options.recordings) > _COMPARED_MAX:
+        options.wrong_usage(f"at most {_COMPARED_MAX} recordings fit into one picture")
+    recordings = [_complete(path, options.route) for path in options.recordings]
+    named = dict(zip(names_of(options.recordings), recordings, strict=True))
+    profile = read_profile(options.profile) if options.profile else None
+    shares = [f"{name} {100 * rates_of(r).combined:.0f} %" for name, r in named.items()]
+    title = f"Share of the time with interventions: {', '.join(shares)}"
+    out = options.out or options.recordings[0].with_suffix(".png")
+    save(figure_of(named, title, profile), out)
+    print(f"picture  {out}")
+
+
+def names_of(paths: Sequence[Path]) -> list[str]:
+    """Return the shortest ends of the paths that tell them apart; a file given twice counts up."""
+    names = [path.stem for path in paths]
+    depth = 1
+    while len(set(names)) < len(set(paths)) and depth < max(len(p.parts) for p in paths):
+        depth += 1
+        names = ["/".join((*path.parts[-depth:-1], path.stem)) for path in paths]
+    return [
+        name if name not in names[:at] else f"{name} ({names[:at].count(name) + 1})"
+        for at, name in enumerate(names)
+    ]
+
+
+def _complete(path: Path, route: str | None) -> Recording:
+    """Read a recording; derive what a picture needs and the recording lacks."""
+    recording = read_recording(path)
+    missing = [name for name in _NEEDED if name not in recording]
+    if missing and route is None:
+        raise ModelError(
+            f"{path}: no column {', '.join(missing)}; name the route driven with --route"
+        )
+    function = DrivingFunction()
+    function.prepare(choose_route(route or "study")[0])
+    return completed(recording, function.route, function.profile)
