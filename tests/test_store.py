@@ -348,6 +348,29 @@ def test_lock_excludes_other_instances_in_the_same_process(tmp_path: Path) -> No
     assert content(tmp_path) == {}
 
 
+@pytest.mark.skipif(os.name == "nt", reason="Windows does not remove a file that is open")
+def test_lock_on_a_file_that_its_last_holder_removed_does_not_count(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    really_lock = disk._lock
+    removals = iter(["gone", "gone and made anew by the next holder"])
+
+    def lock_too_late(descriptor: int) -> None:
+        really_lock(descriptor)
+        for removal in removals:
+            (tmp_path / LOCK_NAME).unlink()
+            if "anew" in removal:
+                (tmp_path / LOCK_NAME).write_bytes(b"")
+            return
+
+    monkeypatch.setattr(disk, "_lock", lock_too_late)
+    for _ in range(2):
+        with pytest.raises(ModelError, match="held"), folder_lock(tmp_path, NOBODY_ELSE):
+            pass
+    with folder_lock(tmp_path, NOBODY_ELSE):
+        pass
+
+
 # Saving that fails or is killed
 
 
