@@ -95,8 +95,8 @@ def _draw(driven: Sequence[Driven], profile: StoredProfile | None, out: Path) ->
 def _headline(driven: Sequence[Driven]) -> str:
     base, learned = (100 * mean_rates(driven, group).combined for group in PUBLISHED)
     return (
-        f"One driver, {len(driven)} drives: interventions in {base:.0f} % of the time with the base "
-        f"function, in {learned:.0f} % with what it learned"
+        f"One driver intervenes in {base:.0f} % of the time with the base function, "
+        f"in {learned:.0f} % with what it learned"
     )
 
 
