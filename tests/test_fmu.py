@@ -520,6 +520,31 @@ def test_resource_locations(cart_fmu, tmp_path, spelling):
     cart.free()
 
 
+LOCATION = """
+import sys
+from pathlib import Path
+sys.path.insert(0, {tests!r})
+from fmi_host import Host
+Host(Path({fmu!r}), Path({folder!r})).instantiate(location={location!r}).start()
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="spelling of paths on POSIX systems")
+@pytest.mark.xfail(strict=True, reason="pythonfmu 0.7.0 crashes before any Python of the FMU runs")
+@pytest.mark.parametrize("location", ["file:{}/resources", "file://{}%2B/resources"])
+def test_resource_locations_that_the_wrapper_cannot_read(cart_fmu, tmp_path, location):
+    """When this passes, the wrapper was repaired: docs/fmu.md can lose a limit."""
+    folder = tmp_path / ("here+" if "%2B" in location else "here")
+    script = LOCATION.format(
+        tests=str(EXAMPLE.parent),
+        fmu=str(cart_fmu),
+        folder=str(folder),
+        location=location.format(tmp_path / "here"),
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, check=False)
+    assert done.returncode == 0
+
+
 @pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX systems")
 def test_resources_may_be_read_only(cart_fmu, tmp_path):
     host = Host(cart_fmu, tmp_path / "fmu")
@@ -690,6 +715,63 @@ def test_drive_restored_in_another_instance_is_learned_for_its_own_driver(dist, 
     assert [p.name[:14] for p in tmp_path.glob("*.pldf")] == ["driver-000001_"]
 
 
+def test_next_drive_follows_what_the_last_one_learned(dist, tmp_path):
+    host = Host(dist / "AdaptivePLDF.fmu")
+    found = []
+    for ending in ("terminate", "reset", "freeInstance"):
+        slave = host.instantiate().start(profile_store=str(tmp_path), learn=1)
+        found.append((slave.get("profile.iteration"), slave.get("profile.status")))
+        drive_on(slave, 0, 100)
+        getattr(slave.fmu, ending)()
+        if ending != "freeInstance":
+            slave.free()
+    last = host.instantiate().start(profile_store=str(tmp_path))
+    assert [*found, (last.get("profile.iteration"), last.get("profile.status"))] == [
+        (0, 0), (1, 1), (2, 1), (3, 1)
+    ]  # fmt: skip
+    last.free()
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("name", build_fmu.FMUS)
+def test_inputs_that_are_no_numbers_never_come_out(dist, name, value):
+    slave = Host(dist / f"{name}.fmu").instantiate().start()
+    inputs = [n for n, v in slave.variables.items() if (v.causality, v.type) == ("input", "Real")]
+    time = 0.0
+    for bad in inputs:
+        slave.set(**{bad: value})
+        between = slave.outputs()
+        after = slave.run(time, 2)
+        assert all(math.isfinite(v) for o in (between, *after) for v in o.values()), bad
+        slave.set(**{bad: 0.0})
+        slave.run(time + 0.02, 2)
+        time += 0.04
+    assert len(slave.log) < 4 * len(inputs)
+    slave.free()
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"route_id": 999}, "999"),
+        ({"route_file": "/no/such/road.xodr"}, "/no/such/road.xodr"),
+        ({"planner__accel_max_mps2": math.nan}, "planner.accel_max_mps2"),
+        ({"learn": 7}, "learn"),
+        ({"localization": -1}, "localization"),
+    ],
+)
+def test_unusable_parameters_of_the_driving_function(dist, values, message):
+    slave = Host(dist / "AdaptivePLDF.fmu").instantiate()
+    slave.set(**values)
+    slave.fmu.setupExperiment(startTime=0.0)
+    slave.fmu.enterInitializationMode()
+    assert slave.status("exitInitializationMode") == FATAL
+    (text,) = slave.texts()
+    assert message in text
+    assert "Traceback" not in text
+    slave.free()
+
+
 def test_all_three_in_one_process(dist, monkeypatch, tmp_path):
     monkeypatch.setenv("PLDF_PROFILE_STORE", str(tmp_path))
     hosts = [Host(dist / f"{name}.fmu") for name in build_fmu.FMUS]
@@ -698,3 +780,29 @@ def test_all_three_in_one_process(dist, monkeypatch, tmp_path):
         assert len(slave.run(0.0, 20)) == 20
     for slave in slaves:
         slave.free()
+
+
+ONE_AFTER_THE_OTHER = """
+import shutil, sys
+from pathlib import Path
+sys.path.insert(0, {tests!r})
+from fmi_host import Host
+for number, name in enumerate({names!r}):
+    host = Host(Path({dist!r}, name + ".fmu"), Path(str(number)))
+    slave = host.instantiate().start()
+    slave.run(0.0, 5)
+    slave.free()
+    shutil.rmtree(host.folder)
+"""
+
+
+def test_one_after_the_other_from_folders_that_vanish(dist, tmp_path):
+    names = list(build_fmu.FMUS)
+    script = ONE_AFTER_THE_OTHER.format(
+        tests=str(EXAMPLE.parent), dist=str(dist), names=[*reversed(names), *names]
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == ""

@@ -16,7 +16,7 @@ from pythonfmu import FmuBuilder  # type: ignore[import-untyped]
 from ..slave import ModelSlave
 from .archive import read_members, with_guid, write_archive
 from .documentation import document
-from .isolate import copy_module, copy_package
+from .isolate import copy_file, copy_package, digest, packed_files
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Recipe:
 
     Attributes:
         script: module that defines the slave class.
-        packages: in the order of dependence, each may import those before it by name.
+        packages: they may import each other by name.
         icon: PNG shown by importers.
         license: licence text of the project.
     """
@@ -47,14 +47,16 @@ class Recipe:
 def build(recipe: Recipe, out: Path) -> Path:
     """Build the FMU into folder ``out`` and return its path; ValueError if it cannot be packed."""
     out.mkdir(parents=True, exist_ok=True)
+    identity = digest(_sources(recipe))
     with tempfile.TemporaryDirectory(prefix="fmu_") as temporary:
         stage = Path(temporary, "stage")
         stage.mkdir()
-        names: dict[str, str] = {}
+        names = {p.folder.name: f"{p.folder.name}_{identity}" for p in recipe.packages}
         for package in recipe.packages:
             folder = package.folder
-            names[folder.name] = copy_package(folder, stage, skip=package.skip, names=names)
-        script = copy_module(recipe.script, stage, names)
+            copy_package(folder, stage / names[folder.name], package.skip, names)
+        script = stage / f"{recipe.script.stem}_{identity}.py"
+        copy_file(recipe.script, script, names)
         with _importing_from(stage, script.stem, names):
             slave = slave_of(script.stem)
             folders = [stage / name for name in names.values()]
@@ -63,6 +65,14 @@ def build(recipe: Recipe, out: Path) -> Path:
     path = out / f"{type(slave).__name__}.fmu"
     write_archive(path, with_guid(members))
     return path
+
+
+def _sources(recipe: Recipe) -> dict[str, Path]:
+    files = {recipe.script.name: recipe.script}
+    for package in recipe.packages:
+        for path in packed_files(package.folder, package.skip):
+            files[f"{package.folder.name}/{path}"] = package.folder / path
+    return files
 
 
 def slave_of(module: str) -> ModelSlave:

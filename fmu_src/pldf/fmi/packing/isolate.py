@@ -1,7 +1,8 @@
-"""Packages copied under names that carry their content hash.
+"""Packages copied under names that carry the hash of everything packed into their FMU.
 
 pythonfmu puts ``resources/`` on ``sys.path``, so of two FMUs with a package of the same name in one
-process the second would run the first one's code. A different build therefore has a different name.
+process the second would run the first one's code, from a folder that may be gone. Two builds, and
+two different FMUs, therefore never share a module.
 """
 
 from __future__ import annotations
@@ -17,35 +18,26 @@ ALLOWED_IMPORTS: Final = frozenset(sys.stdlib_module_names | {"numpy", "pythonfm
 _DIGITS: Final = 10
 
 
-def copy_package(
-    source: Path, target: Path, *, skip: Iterable[str], names: Mapping[str, str]
-) -> str:
-    """Copy package ``source`` into folder ``target`` and return its new name.
+def copy_package(source: Path, target: Path, skip: Iterable[str], names: Mapping[str, str]) -> None:
+    """Copy package ``source`` to folder ``target``.
 
     Args:
         source: folder of the package.
-        target: folder in which the copy is made.
+        target: folder of the copy.
         skip: paths relative to ``source`` that stay out (files or folders).
         names: old and new names of packages that it imports absolutely.
 
     Raises:
         ValueError: the package imports something that the target machine need not have.
     """
-    files = {path: _content(source / path, names) for path in packed_files(source, skip)}
-    new_name = f"{source.name}_{digest(files)}"
-    for path, content in files.items():
-        place = target / new_name / path
-        place.parent.mkdir(parents=True, exist_ok=True)
-        place.write_bytes(content)
-    return new_name
+    for path in packed_files(source, skip):
+        copy_file(source / path, target / path, names)
 
 
-def copy_module(source: Path, target: Path, names: Mapping[str, str]) -> Path:
-    """Copy one module like ``copy_package`` and return the path of the copy."""
-    content = _content(source, names)
-    copy = target / f"{source.stem}_{digest({source.name: content})}.py"
-    copy.write_bytes(content)
-    return copy
+def copy_file(source: Path, target: Path, names: Mapping[str, str]) -> None:
+    """Copy one file like ``copy_package``."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    target.write_bytes(_content(source, names))
 
 
 def packed_files(source: Path, skip: Iterable[str]) -> list[str]:
@@ -60,12 +52,13 @@ def packed_files(source: Path, skip: Iterable[str]) -> list[str]:
     )
 
 
-def digest(files: Mapping[str, bytes]) -> str:
+def digest(files: Mapping[str, Path]) -> str:
     """Return the first hex digits of the hash over names and contents."""
     total = hashlib.sha256()
     for name in sorted(files):
-        total.update(f"{len(name)} {name} {len(files[name])}\n".encode())
-        total.update(files[name])
+        content = files[name].read_bytes()
+        total.update(f"{len(name)} {name} {len(content)}\n".encode())
+        total.update(content)
     return total.hexdigest()[:_DIGITS]
 
 
