@@ -108,11 +108,13 @@ def _insert_stretched(st: PldfState, trace: TraceArrays, work: Work, k: int, alp
     start = stretched_position(d_0, d_n, alpha)
     lift = value_at(trace.speed_mps, start) - value_at(trace.speed_mps, d_0)
     first = max(cell_at(len(work.a), start), st.first_node)
-    last = min(cell_at(len(work.a), d_n), st.first_node + st.nodes - 1)
+    end = st.first_node + st.nodes - 1
+    last = min(cell_at(len(work.a), d_n), end)
     for i in range(first, last + 1):
         if i < start:
             continue
-        d = source_position(float(i), d_n, alpha)
+        # Behind the last node recorded there is no speed to read, though the drive went on a bit.
+        d = min(source_position(float(i), d_n, alpha), float(end))
         speed = joined_speed(value_at(trace.speed_mps, d), d, (d_0, d_n), lift)
         usable = trace.usable[cell_at(len(trace.usable), d)] > 0.0 and work.b[i] != NOT_LEARNED
         work.a[i] = speed
