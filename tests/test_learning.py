@@ -1,0 +1,223 @@
+"""Learning from pedal interventions: what changes, by how much, where, and what never does."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as hs
+from laboratory import (
+    KMH,
+    Array,
+    after,
+    bent,
+    function,
+    plain,
+    play,
+    play_override,
+    road,
+)
+from pldf.function import DrivingFunction
+from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE
+
+BASE = 100.0 * KMH
+BENT_ROAD = road(
+    900.0,
+    ((0.0, 100.0 * KMH), (300.0, 60.0 * KMH), (500.0, 80.0 * KMH)),
+    [(120.0, 180.0, 0.008), (600.0, 680.0, 0.012)],
+)
+points = hs.lists(
+    hs.tuples(hs.floats(0.0, 900.0), hs.floats(0.5, 50.0)), min_size=1, max_size=8
+).map(lambda p: bent(*sorted(p)))
+
+
+def changed(made: DrivingFunction, learned: Array) -> Array:
+    return np.flatnonzero(learned != np.array(made.profile.learned_mps))
+
+
+def override(speed_mps: float, first: float, last: float, **settings_: float) -> DrivingFunction:
+    """2 km at 100 km/h, with gas from ``first`` to ``last`` at another speed."""
+    made = function(road(2000.0), **settings_)
+    speed = bent((0, BASE), (first, BASE), (first + 1, speed_mps), (last, speed_mps),
+                 (last + 1, BASE), (2000, BASE))  # fmt: skip
+    play_override(made, speed, gas=[(first, last)])
+    return made
+
+
+# What is learned
+
+
+def test_half_of_the_deviation_is_learned_where_the_driver_intervened() -> None:
+    learned = override(31.0, 600.0, 1200.0).learn().learned_mps
+    np.testing.assert_allclose(learned[700:1150], 0.5 * (BASE + 31.0), atol=1e-9)
+
+
+def test_learning_starts_before_the_pedal_was_pressed() -> None:
+    made = override(31.0, 600.0, 1200.0)
+    first = changed(made, made.learn().learned_mps)[0]
+    assert 600.0 - 3.0 * BASE - 1.0 <= first < 560.0
+
+
+def test_the_weight_of_the_driver_is_a_parameter() -> None:
+    learned = override(31.0, 600.0, 1200.0, learning_weight=1.0).learn().learned_mps
+    assert learned[900] == pytest.approx(31.0)
+    learned = override(31.0, 600.0, 1200.0, learning_weight=0.0).learn().learned_mps
+    np.testing.assert_array_equal(learned, np.full(2001, BASE))
+
+
+def test_small_deviations_are_not_learned() -> None:
+    made = override(BASE + 0.9 * KMH, 600.0, 1200.0)
+    assert len(changed(made, made.learn().learned_mps)) == 0
+    made = override(BASE + 1.1 * KMH, 600.0, 1200.0)
+    assert len(changed(made, made.learn().learned_mps)) > 500
+
+
+@pytest.mark.parametrize(("gap_s", "pieces"), [(0.8, 1), (1.2, 2)])
+def test_runs_merge_over_short_gaps(gap_s: float, pieces: int) -> None:
+    made = function(road(2000.0), learning_stretch_factor=0.0)
+    end = 900.0 + gap_s * BASE
+    speed = bent((0, BASE), (600, BASE), (601, 31), (900, 31), (900.5, BASE), (end - 0.5, BASE),
+                 (end, 31), (1200, 31), (1201, BASE))  # fmt: skip
+    play_override(made, speed, gas=[(600, 1200)])
+    where = changed(made, made.learn().learned_mps)
+    assert np.count_nonzero(np.diff(where) > 1) == pieces - 1
+
+
+def test_smooth_and_joined_to_the_unchanged_profile() -> None:
+    made = override(31.0, 600.0, 1200.0)
+    learned = made.learn().learned_mps
+    assert np.abs(np.diff(learned)).max() < 0.12
+    assert learned.max() <= 0.5 * (BASE + 31.0) + 1e-9
+    assert learned.min() >= BASE
+
+
+# What is not
+
+
+@settings(deadline=None, max_examples=30)
+@given(points)
+def test_a_deviation_without_intervention_is_never_learned(speed: object) -> None:
+    made = function(BENT_ROAD)
+    play_override(made, speed)  # type: ignore[arg-type]
+    learned = made.learn()
+    np.testing.assert_array_equal(learned.learned_mps, np.array(made.profile.base_mps))
+    assert not np.any(learned.drive)
+    assert not np.any(learned.offset_mps)
+
+
+def test_interventions_that_do_not_deviate_change_nothing() -> None:
+    made = function(road(2000.0))
+    play_override(made, BASE + 0.9 * KMH, gas=[(200, 400)], brake=[(600, 900)])
+    np.testing.assert_array_equal(made.learn().learned_mps, made.profile.base_mps)
+
+
+def test_a_drive_without_interventions_keeps_what_was_learned() -> None:
+    made = override(31.0, 600.0, 1200.0)
+    stored = after(made, made.learn())
+    made = function(road(2000.0), stored)
+    np.testing.assert_array_equal(made.profile.learned_mps, stored.iterations[-1].learned_mps)
+    play_override(made, BASE)
+    again = made.learn()
+    np.testing.assert_array_equal(again.learned_mps, stored.iterations[-1].learned_mps)
+    np.testing.assert_array_equal(again.drive, stored.iterations[-1].drive)
+
+
+@pytest.mark.parametrize("hole_s", [0.9, 1.2])
+def test_a_hole_in_the_recording_rejects_the_segment(hole_s: float) -> None:
+    made = function(road(2000.0))
+    time = np.arange(0.0, 62.0, 0.1)
+    time = time[(time < 25.0) | (time > 24.9 + hole_s)]
+    s_m = 32.0 * time
+    play(made, s_m, 32.0, time_s=time, mode=np.where(s_m > 600.0, GAS_OVERRIDE, ACTIVE))
+    learned = made.learn().learned_mps
+    assert (len(changed(made, learned)) == 0) == (hole_s > 1.0)
+
+
+def test_a_hole_elsewhere_rejects_nothing() -> None:
+    made = function(road(2000.0))
+    s_m = np.arange(0.0, 2000.5, 0.5)
+    s_m = s_m[(s_m < 100.0) | (s_m > 150.0)]
+    speed = np.where((s_m > 900.0) & (s_m < 1200.0), 31.0, BASE)
+    play(made, s_m, speed, mode=np.where((s_m > 900) & (s_m < 1200), GAS_OVERRIDE, ACTIVE))
+    assert made.trace.gap[120] == 1.0
+    assert len(changed(made, made.learn().learned_mps)) > 250
+
+
+def test_nothing_is_learned_below_10_kmh() -> None:
+    made = function(road(1000.0, ((0.0, 30.0 * KMH),)))
+    play_override(
+        made, bent((0, 8), (300, 8), (310, 2.5), (500, 2.5), (510, 8)), brake=[(250, 600)]
+    )
+    learned = made.learn().learned_mps
+    where = changed(made, learned)
+    assert len(where) > 0
+    assert not np.any((where > 310) & (where < 500))
+    assert learned.min() > 10.0 * KMH
+
+
+def test_nothing_is_learned_where_it_is_not_eligible() -> None:
+    made = function(road(2000.0))
+    s_m = np.arange(0.0, 2000.5, 0.5)
+    play(
+        made,
+        s_m,
+        np.where((s_m > 600.0) & (s_m < 1200.0), 31.0, BASE),
+        mode=np.where((s_m > 600.0) & (s_m < 1200.0), GAS_OVERRIDE, ACTIVE),
+        eligible=np.where((s_m > 800.0) & (s_m < 1000.0), 0.0, 1.0),
+    )
+    where = changed(made, made.learn().learned_mps)
+    assert not np.any((where > 801) & (where < 1000))
+    assert np.any(where < 800)
+    assert np.any(where > 1001)
+
+
+# Interventions at the ends
+
+
+def test_an_intervention_still_active_at_the_end_is_learned_to_the_last_node() -> None:
+    made = plain(function(road(1000.0)))
+    s_m = np.arange(0.0, 800.75, 0.6)
+    play(made, s_m, 31.0, mode=np.where(s_m < 500.0, ACTIVE, GAS_OVERRIDE))
+    learned = made.learn().learned_mps
+    last = made.record.first_node + made.record.nodes - 1
+    assert last == 800
+    assert made.trace.end_m[0] > last
+    np.testing.assert_allclose(made.work.a[420 : last + 1], 31.0, atol=1e-9)
+    # From the last metres on the car has to come back to the profile, at -3 m/s2.
+    np.testing.assert_allclose(learned[420:785], 0.5 * (BASE + 31.0), atol=1e-9)
+    np.testing.assert_array_equal(learned[last + 1 :], BASE)
+
+
+def test_a_recording_of_a_part_of_the_route_teaches_that_part() -> None:
+    made = function(road(2000.0))
+    s_m = np.arange(500.3, 900.0, 0.5)
+    play(made, s_m, 31.0, mode=GAS_OVERRIDE)
+    where = changed(made, made.learn().learned_mps)
+    assert (where[0], where[-1]) == (501, 899)
+
+
+# Provenance
+
+
+def test_every_change_names_its_drive_and_intervention() -> None:
+    made = function(road(2000.0))
+    speed = bent((0, BASE), (400, BASE), (401, 31), (600, 31), (601, BASE), (1000, BASE),
+                 (1001, 31), (1200, 31), (1201, BASE))  # fmt: skip
+    play_override(made, speed, gas=[(400, 600), (1000, 1200)])
+    first = made.learn()
+    assert first.number == 1
+    assert first.interventions == 2
+    where = changed(made, first.learned_mps)
+    assert set(first.intervention[where[where < 700]]) == {1.0}
+    assert set(first.intervention[where[where > 700]]) == {2.0}
+    made = function(road(2000.0), after(made, first))
+    play_override(made, bent((0, BASE), (1500, BASE), (1501, 24), (1600, 24), (1601, BASE)),
+                  brake=[(1500, 1600)])  # fmt: skip
+    second = made.learn()
+    where = changed(made, second.learned_mps)
+    assert where.min() > 1300
+    assert set(second.drive[where]) == {2.0}
+    assert set(second.intervention[where]) == {1.0}
+    kept = np.setdiff1d(np.arange(2001), where)
+    np.testing.assert_array_equal(second.drive[kept], first.drive[kept])
+    np.testing.assert_array_equal(second.intervention[kept], first.intervention[kept])
