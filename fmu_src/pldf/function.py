@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
 from typing import Final, cast
 
 import numpy as np
@@ -35,7 +34,6 @@ from .store import (
     STORE_VARIABLE,
     Iteration,
     ProfileConflict,
-    ProfileRefused,
     ProfileStore,
     StoredProfile,
 )
@@ -46,6 +44,11 @@ INPUT_TEXT: Final = {
     OFF_ROUTE: "the vehicle is off the route: function inactive",
     POSITION_JUMP: "the position jumped: function inactive until it is reactivated",
 }
+
+NO_STORE: Final = (
+    "no profile store: nothing is loaded or saved. Set the parameter profile_store or the "
+    f"environment variable {STORE_VARIABLE} to a folder."
+)
 
 
 @dataclass(slots=True)
@@ -71,6 +74,7 @@ class DrivingFunction(Instance[PldfState]):
         super().__init__(PldfState(), Files())
         self.stored: StoredProfile | None = None
         self.learned: Iteration | None = None
+        self._store: ProfileStore | None = None
         self._reported = INPUT_OK
 
     def initialize(self) -> None:
@@ -153,43 +157,43 @@ class DrivingFunction(Instance[PldfState]):
             return read_route(self.texts.route_file)
         return packed_route(self.record.route_id)
 
-    def _store(self) -> ProfileStore | None:
+    def _open_store(self) -> ProfileStore | None:
         folder = self.texts.profile_store or os.environ.get(STORE_VARIABLE, "")
-        return ProfileStore(Path(folder)) if folder else None
+        return ProfileStore(folder) if folder else None
 
     def _load(self, route: str) -> StoredProfile:
         """Return the stored profile, or a new one if there is none or it cannot be used."""
         st = self.record
-        new = StoredProfile(st.driver_id, route, np.array(self.profile.base_mps))
-        store = self._store()
-        st.profile_status = PROFILE_BASE
-        if store is None:
+        base = np.array(self.profile.base_mps)
+        new = StoredProfile(st.driver_id, route, base)
+        self._store = self._open_store()
+        if self._store is None:
             st.profile_status = PROFILE_NOT_PERSISTED
             if st.learn != LEARN_OFF or st.apply_learned:
-                self.report(
-                    "warning",
-                    "no profile store: nothing is loaded or saved. Set the parameter "
-                    f"profile_store or the environment variable {STORE_VARIABLE} to a folder.",
-                )
+                self.report("warning", NO_STORE)
             return new
         try:
-            found = store.load(st.driver_id, route, len(new.base_mps))
+            found = self._store.load(st.driver_id, route, len(base))
         except ModelError as refusal:
             st.profile_status = PROFILE_REFUSED
             self.report("warning", str(refusal))
             return new
-        if found is None or not found.iterations:
-            return found or new
-        st.profile_status = PROFILE_LOADED
-        return found
+        if found is None:
+            st.profile_status = PROFILE_BASE
+            return new
+        st.profile_status = PROFILE_LOADED if found.iterations else PROFILE_BASE
+        # The planner's parameters may have changed since the file was written.
+        return replace(found, base_mps=base)
 
     def _save(self, iteration: Iteration) -> None:
-        store = self._store()
-        if store is None or self.stored is None:
+        if self._store is None or self.stored is None:
             return
         try:
-            saved = store.append(self.stored, iteration)
-        except (ProfileConflict, ProfileRefused, ModelError, OSError) as problem:
+            saved = self._store.append(self.stored, iteration)
+        except ProfileConflict as conflict:
+            self.report("warning", str(conflict))
+            return
+        except ModelError as problem:
             self.report("error", f"profile not saved: {problem}")
             return
         if saved.warning:
