@@ -124,14 +124,14 @@ def tell(said: Iterable[Said]) -> None:
     """Print what the FMUs warned of, once, on stderr."""
     for message in dict.fromkeys(said):
         if message.level == "warning":
-            print(f"pldf: {message.part}: {message.text}", file=sys.stderr)
+            print(f"pldf: {message.fmu}: {message.text}", file=sys.stderr)
 
 
 def require_no_errors(said: Iterable[Said]) -> None:
     """Raise ModelError with the first error that an FMU reported and survived."""
     for message in said:
         if message.level == "error":
-            raise ModelError(f"{message.part}: {message.text}")
+            raise ModelError(f"{message.fmu}: {message.text}")
 
 
 def _whole(text: str) -> int:

@@ -38,7 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--apply", action=argparse.BooleanOptionalAction, default=None,
-        help="drive the learned profile, or the base profile (default: learned)",
+        help="drive the learned profile, or the base profile (default: learned, if there is a store)",
     )  # fmt: skip
     parser.add_argument(
         "--learn", choices=LEARN.items, help="what is learned from the drive (default: OFF)"
@@ -103,10 +103,14 @@ def _phase(options: argparse.Namespace) -> Phase:
         return phase._replace(intervenes=driver != "none") if driver else phase
     return Phase(
         name="Drive",
-        apply_learned=options.apply is not False,
+        apply_learned=bool(_store(options.store)) if options.apply is None else options.apply,
         learn=options.learn == "FAITHFUL",
         intervenes=driver != "none",
     )
+
+
+def _store(folder: Path | None) -> Path | str:
+    return folder or os.environ.get(STORE_VARIABLE, "")
 
 
 def _with_script(
@@ -141,7 +145,7 @@ def _print_rates(driven: Drive) -> None:
 
 
 def _print_learned(setting: Setting) -> None:
-    folder = setting.store or os.environ.get(STORE_VARIABLE, "")
+    folder = _store(setting.store)
     if not folder:
         print("learned    nothing kept: there is no profile store")
         return

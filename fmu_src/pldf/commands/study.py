@@ -96,7 +96,7 @@ def _headline(driven: Sequence[Driven]) -> str:
     base, learned = (100 * mean_rates(driven, group).combined for group in PUBLISHED)
     return (
         f"One driver intervenes in {base:.0f} % of the time with the base function, "
-        f"in {learned:.0f} % with what it learned"
+        f"in {learned:.0f} % after learning"
     )
 
 

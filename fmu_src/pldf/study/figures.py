@@ -6,7 +6,7 @@ would tell apart is hatched or dashed as well, for print.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -33,7 +33,7 @@ STYLES: Final[dict[str, dict[str, Any]]] = {
 }
 NAMES: Final = {
     "gas": "Gas pedal",
-    "brake": "Brake, until reactivated",
+    "brake": "Brake until reactivated",
     "set_speed": "Set speed changed",
 }
 _STRIP: Final = 0.045  # height of the set-speed strip, share of the axes
@@ -81,7 +81,7 @@ def figure_of(
         )  # fmt: skip
     axes[0].set_ylabel("Speed (km/h)")
     _draw_pedals(axes[-1], recordings)
-    legend(figure, axes[0], ("gas", "brake", "set_speed"))
+    legend(figure, axes[0], recordings.values())
     finish(axes, first)
     figure.suptitle(title, x=0.01, ha="left", fontsize=13)
     return figure
@@ -125,14 +125,20 @@ def draw_limit_and_base(axis: Any, recording: Recording) -> None:
     )  # fmt: skip
 
 
-def legend(figure: Figure, axis: Any, kinds: tuple[str, ...]) -> None:
-    """Put one legend below the figure: lines of ``axis``, then the kinds of interventions."""
+def legend(figure: Figure, axis: Any, recordings: Iterable[Recording] = ()) -> None:
+    """Put one legend below the figure: lines of ``axis``, then what is shaded in ``recordings``."""
+    found = {
+        interval.kind
+        for recording in recordings
+        for interval in (*pedal_interventions(recording), *set_speed_interventions(recording))
+    }
+    kinds = [kind for kind in NAMES if kind in found]
     lines, labels = axis.get_legend_handles_labels()
     patches = [Patch(**STYLES[kind]) for kind in kinds]
     figure.legend(
         [*lines, *patches], [*labels, *(NAMES[kind] for kind in kinds)],
         loc="outside lower center", ncols=min(len(lines) + len(patches), 7), frameon=False,
-        fontsize=9,
+        fontsize=9, columnspacing=1.6, handlelength=1.8,
     )  # fmt: skip
 
 

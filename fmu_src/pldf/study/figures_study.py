@@ -50,10 +50,15 @@ def drives_figure(
         axis.set_title(f"{name}  {titles[name]}", loc="left", fontsize=10)
         axis.set_ylabel("km/h")
     fit_speeds(axes[0], list(recordings.values()))
-    legend(figure, axes[-1], ("gas", "brake", "set_speed"))
+    legend(figure, _richest(axes), recordings.values())
     finish(axes, next(iter(recordings.values())))
     figure.suptitle(title, x=0.01, ha="left", fontsize=13)
     return figure
+
+
+def _richest(axes: Any) -> Any:
+    """Return the panel with most labelled lines: only learned profiles have all of them."""
+    return max(axes, key=lambda axis: len(axis.get_legend_handles_labels()[1]))
 
 
 def profile_figure(
@@ -80,7 +85,7 @@ def profile_figure(
     axes[0].margins(y=0.08)
     axes[0].set_ylabel("Speed (km/h)")
     axes[1].set_ylabel("Learned minus base\n(km/h)")
-    legend(figure, axes[0], ())
+    legend(figure, axes[0])
     finish(axes, recording)
     figure.suptitle(title, x=0.01, ha="left", fontsize=13)
     return figure

@@ -30,9 +30,9 @@ _C_TYPES: Final[dict[str, Any]] = {
 
 
 class Said(NamedTuple):
-    """A message of an FMU's logger."""
+    """A message of an FMU's logger; ``fmu`` is the name of the model."""
 
-    part: str
+    fmu: str
     level: Level
     text: str
 
@@ -129,7 +129,7 @@ class Slave:
 
     Args:
         fmu: the unpacked FMU.
-        part: its name in the coupled system, also the name of the instance.
+        part: name of the instance.
         inputs: names of the inputs that ``write`` sets at every communication point.
 
     Attributes:
@@ -143,11 +143,11 @@ class Slave:
 
     def __init__(self, fmu: Fmu, part: str, inputs: Iterable[str]) -> None:
         self.fmu = fmu
-        self.part = part
         self.said: list[Said] = []
         self._set, self.inputs = self._batches(inputs)
         self._get, self.outputs = self._batches(s.name for s in fmu.named("output"))
         model = fmu.description
+        self.name: str = model.modelName
         self._slave = fmi.FMU2Slave(
             guid=model.guid,
             unzipDirectory=str(fmu.folder),
@@ -208,12 +208,12 @@ class Slave:
         except FMICallException as problem:
             errors = [said.text for said in self.said if said.level == "error"]
             text = errors[-1] if errors else str(problem)
-            raise ModelError(f"{self.part}: {text}") from None
+            raise ModelError(f"{self.name}: {text}") from None
 
     def _hear(self, _: Any, name: bytes, status: int, category: bytes, text: bytes) -> None:
         # The text is a printf format without arguments.
         plain = text.decode("utf-8", "replace").replace("%%", "%")
-        said = Said(self.part, _LEVELS[status], plain)
+        said = Said(self.name, _LEVELS[status], plain)
         if said not in self.said and not plain.startswith(_WRAPPERS_NOTE):
             self.said.append(said)
 

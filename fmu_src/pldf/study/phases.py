@@ -99,7 +99,7 @@ def choose_route(name: str) -> tuple[Route, dict[str, Value]]:
 def values_of(phase: Phase, setting: Setting, drive: int = 0) -> Values:
     """Return what to set in the FMUs for ``phase``, the drive with this number, from 0.
 
-    The car starts at the speed that the base profile has there.
+    The car starts at the speed that the base profile has at its start.
     """
     pldf: dict[str, Value] = {
         **setting.road,
@@ -109,10 +109,12 @@ def values_of(phase: Phase, setting: Setting, drive: int = 0) -> Values:
     }
     if setting.store is not None:
         pldf["profile_store"] = str(setting.store.resolve())
+    start_m = float(setting.more.get("vehicle", {}).get("start_s_m", 0.0))
     base_mps = route_facts(setting.route).base_mps
+    start_mps = float(base_mps[max(0, min(int(start_m), len(base_mps) - 1))])
     chosen: dict[str, dict[str, Value]] = {
         "pldf": pldf,
-        "vehicle": {**setting.road, "start_speed_mps": float(base_mps[0])},
+        "vehicle": {**setting.road, "start_speed_mps": start_mps},
         "driver": {
             **setting.road,
             "kind": PREFERENCE if phase.intervenes else HANDS_OFF,

@@ -150,7 +150,7 @@ def _described(fmus: Mapping[str, Fmu], phases: Sequence[Phase], setting: Settin
 def _require_good(phase: Phase, result: Drive) -> None:
     for said in result.said:
         if said.level == "error":
-            raise ModelError(f"drive {phase.name}: {said.part}: {said.text}")
+            raise ModelError(f"drive {phase.name}: {said.fmu}: {said.text}")
     if not result.arrived:
         raise ModelError(f"drive {phase.name} was given up: the vehicle {result.ending}")
 
