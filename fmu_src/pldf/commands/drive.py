@@ -38,7 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--apply", action=argparse.BooleanOptionalAction, default=None,
-        help="drive the learned profile, or the base profile (default: learned, if there is a store)",
+        help="drive the learned or the base profile (default: learned, if there is a store)",
     )  # fmt: skip
     parser.add_argument(
         "--learn", choices=LEARN.items, help="what is learned from the drive (default: OFF)"

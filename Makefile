@@ -1,0 +1,67 @@
+# make study   set up .venv, build the FMUs, drive the six drives of the study into out/
+# make test    all tests          make lint    formatting, lints, types
+# make bench   all speeds, JSON   make build   the FMUs into dist/      make clean
+#
+# Needs make and Python 3.11 or newer; PYTHON=... chooses one. STUDY=... passes options, e.g.
+# make study STUDY="--seed 7 --set wish.offset_mps=-2"
+
+ifeq ($(OS),Windows_NT)
+BIN := .venv/Scripts
+PYTHON ?= py -3
+else
+BIN := .venv/bin
+PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3.14 python3 python; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
+endif
+
+READY := .venv/.ready
+BUILT := dist/.built
+FMU_SOURCES := $(shell find fmu_src vehicle_models build_fmu.py LICENSE -type f \
+	-not -path '*/__pycache__/*' -not -path '*.egg-info/*')
+
+.PHONY: help study test lint format bench build setup clean
+
+help:
+	@sed -n '1,/^$$/s/^# \{0,1\}//p' Makefile
+
+study: $(BUILT)
+	$(BIN)/pldf study --out out $(STUDY)
+
+test: $(READY)
+	$(BIN)/python -m pytest $(TESTS)
+
+lint: $(READY)
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+
+format: $(READY)
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+
+bench: $(BUILT)
+	@$(BIN)/python benchmarks/bench.py
+
+build: $(BUILT)
+
+setup: $(READY)
+
+$(BUILT): $(READY) $(FMU_SOURCES)
+	$(BIN)/python build_fmu.py --out dist
+	@touch $@
+
+# pip learned --group in 25.1; the stamp is written last, so an interrupted set-up is repeated.
+$(READY): pyproject.toml
+	@test -n "$(PYTHON)" || { echo "make: no Python 3.11 or newer found;" \
+		"install one or name it: make PYTHON=/path/to/python3.11 $(MAKECMDGOALS)" >&2; exit 1; }
+	$(PYTHON) -c 'import sys; sys.exit(None if sys.version_info >= (3, 11) else \
+		"make: " + sys.version.split()[0] + " is too old, Python 3.11 or newer is needed")'
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --upgrade "pip>=25.1"
+	$(BIN)/python -m pip install --quiet --editable . --group dev
+	@touch $@
+
+# Leaves .venv (set-up takes minutes) and the recordings and profiles in out/.
+clean:
+	rm -rf dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage htmlcov
+	find . -name __pycache__ -type d -not -path './.venv/*' -prune -exec rm -rf {} +
