@@ -75,14 +75,18 @@ def _carry_learned(
     following: NextArrays,
     drive: float,
 ) -> None:
-    """Where the plan changed, put what the pedals taught on top of the new plan (decision)."""
+    """Where the plan changed, put what the pedals taught on top of the new plan (decision).
+
+    A slowdown taught at a much higher set speed ends at the lowest speed that may be learned.
+    """
     n = len(following.planned_mps)
     first = -1
     for i in range(n):
         changed = following.planned_mps[i] != profile.planned_mps[i]
         if changed:
             taught = profile.learned_mps[i] - profile.planned_mps[i]
-            following.learned_mps[i] = following.planned_mps[i] + taught
+            slowest = min(following.planned_mps[i], st.learning_speed_min_mps)
+            following.learned_mps[i] = max(following.planned_mps[i] + taught, slowest)
             following.drive[i] = drive
             following.intervention[i] = 0.0
             if first < 0:

@@ -96,7 +96,7 @@ class ControlParameters(PlannerParameters):
         "Set-speed change by a long tip", "m/s", start=5.0 * KMH, low=0.0, high=20.0
     )
     control_set_speed_min_mps: float = real_parameter(
-        "Lowest manual set speed", "m/s", start=20.0 * KMH, low=0.0, high=100.0
+        "Lowest manual set speed", "m/s", start=20.0 * KMH, low=1.0, high=100.0
     )
     control_set_speed_max_mps: float = real_parameter(
         "Highest manual set speed", "m/s", start=180.0 * KMH, low=1.0, high=100.0
@@ -158,7 +158,7 @@ class Parameters(ControlParameters):
         "Hole in the recording that rejects a segment", "s", start=1.0, low=0.01, high=60.0
     )
     learning_speed_min_mps: float = real_parameter(
-        "Speed below which nothing is learned", "m/s", start=10.0 * KMH, low=0.0, high=50.0
+        "Speed below which nothing is learned", "m/s", start=10.0 * KMH, low=1.0, high=50.0
     )
     learning_weight: float = real_parameter(
         "Weight of the driver against the profile in the mean of eq. (3)",
