@@ -19,6 +19,7 @@ class AdaptivePLDF(ModelSlave):
 
     about = "Predictive longitudinal driving function that learns from its driver (PLDF with SPAA)"
 
-    def create(self) -> DrivingFunction:
+    @staticmethod
+    def create() -> DrivingFunction:
         """Return a new driving function."""
         return DrivingFunction()

@@ -15,6 +15,7 @@ class LongitudinalVehicle(ModelSlave):
 
     about = "Longitudinal dynamics of one documented car with pedals"
 
-    def create(self) -> Vehicle:
+    @staticmethod
+    def create() -> Vehicle:
         """Return a new vehicle."""
         return Vehicle()

@@ -15,6 +15,7 @@ class ScriptedDriver(ModelSlave):
 
     about = "Driver that follows a script or a hidden wish"
 
-    def create(self) -> Driver:
+    @staticmethod
+    def create() -> Driver:
         """Return a new driver."""
         return Driver()

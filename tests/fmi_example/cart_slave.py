@@ -12,6 +12,7 @@ class PushedCart(ModelSlave):
 
     about = "A cart pushed by a force"
 
-    def create(self) -> Cart:
+    @staticmethod
+    def create() -> Cart:
         """Return a cart."""
         return Cart()

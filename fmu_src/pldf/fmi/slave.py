@@ -8,12 +8,9 @@ switched logging on), and the instance stays usable.
 
 from __future__ import annotations
 
-import struct
 import sys
 from collections.abc import Callable
-from dataclasses import asdict, fields
-from functools import wraps
-from math import isfinite
+from functools import partial, wraps
 from pathlib import Path
 from traceback import extract_tb
 from typing import Any, ClassVar, Concatenate, Final, ParamSpec, TypeVar
@@ -23,9 +20,9 @@ from pythonfmu import Fmi2Slave  # type: ignore[import-untyped]
 from pythonfmu.enums import Fmi2Status  # type: ignore[import-untyped]
 
 from ..instance import Instance, Level, ModelError
-from ..kernel.signals import Signal, signals_of
-from .access import Access, Group
-from .phases import Phase, next_phase
+from .access import Access
+from .phases import Phase
+from .session import Session
 from .wrapper import follow, hold, leave_path, release_at_exit
 
 P = ParamSpec("P")
@@ -42,9 +39,6 @@ _LOG: Final[dict[Level, tuple[Fmi2Status, str]]] = {
     "warning": (Fmi2Status.warning, "logStatusWarning"),
     "error": (Fmi2Status.error, "logStatusError"),
 }
-_STATE: Final = struct.Struct("<8sBBBd")  # magic, phase, ready and pristine, stale, time
-_MAGIC: Final = b"PLDFFMU1"
-_NO_TIME: Final = float("-inf")
 
 
 class RefusedError(Exception):
@@ -78,6 +72,11 @@ def _text(error: BaseException) -> str:
     return f"{type(error).__name__}: {error} (in {place.name}, line {place.lineno})"
 
 
+def _new_model(create: Callable[[], Instance[Any]], resources: str) -> Instance[Any]:
+    follow(resources)
+    return create()
+
+
 class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
     """Base of the slaves; a subclass says what ``create`` makes and what the FMU is about.
 
@@ -99,21 +98,16 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
         if "logger" in kwargs:  # called by the wrapper, not by pythonfmu's builder
             leave_path(self.resources)
             self._release_at_exit()
-        self._model = self.create()
-        self.signals = model_signals(self._model)
+        # No reference to self: a cycle would keep ``__del__`` from running at release.
+        self._session = Session(partial(_new_model, self.create, self.resources or ""))
+        self.signals = self._session.signals
         self._reals = Access(self.signals, frozenset({"Real"}))
         self._integers = Access(self.signals, frozenset({"Integer", "Enumeration"}))
         self._booleans = Access(self.signals, frozenset({"Boolean"}))
         self._strings = Access(self.signals, frozenset({"String"}))
-        self._phase = Phase.INSTANTIATED
-        self._time = _NO_TIME
-        self._prepared = False  # this model was initialized
-        self._ready = False  # the outputs belong to the parameters
-        self._pristine = False  # nothing was set since the model was initialized
-        self._stale = False  # the outputs do not belong to the inputs
-        self._finished = False
 
-    def create(self) -> Instance[Any]:
+    @staticmethod
+    def create() -> Instance[Any]:
         """Return a new model with the default values."""
         raise NotImplementedError
 
@@ -130,55 +124,47 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
     def setup_experiment(
         self, start_time: float, stop_time: float | None = None, tolerance: float | None = None
     ) -> None:
-        """Take over the start time; ModelError unless it is finite."""
-        next_phase(self._phase, "fmi2SetupExperiment")
-        if not isfinite(start_time):
-            raise ModelError(f"the start time must be finite, not {start_time}")
-        self._time = start_time
+        """Take over the start time; it must be finite."""
+        self._session.set_start(start_time)
 
     @_answered
     def enter_initialization_mode(self) -> None:
         """Wait for the values of parameters and inputs."""
-        self._phase = next_phase(self._phase, "fmi2EnterInitializationMode")
+        self._session.enter()
 
     @_answered
     def exit_initialization_mode(self) -> None:
         """Initialize the model with everything that was set."""
-        phase = next_phase(self._phase, "fmi2ExitInitializationMode")
-        if not (self._ready and self._pristine):
-            self._initialize()
-        self._phase = phase
+        self._session.exit()
         self._tell()
 
     @_answered
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Advance the model; False (Discard) and nothing changed when the step makes no sense."""
-        problem = self._problem(current_time, step_size)
+        problem = self._session.problem(current_time, step_size)
         if problem:
             self._refuse(problem)
             return False
-        self._model.step(step_size)
-        self._time = current_time + step_size
-        self._stale = False
+        self._session.step(current_time, step_size)
         self._tell()
         return True
 
     @_answered
     def terminate(self) -> None:
         """End the drive."""
-        self._phase = next_phase(self._phase, "fmi2Terminate")
-        self._finish()
+        self._session.terminate()
         self._tell()
 
     def __del__(self) -> None:
         """End the drive if reset or release come without terminate; nobody listens any more."""
-        if getattr(self, "_phase", None) is not Phase.STEPPING:
+        session = getattr(self, "_session", None)
+        if session is None or session.phase is not Phase.STEPPING:
             return
         try:
-            self._finish()
+            session.finish()
         except Exception as error:  # an exception in a destructor would only be printed raw
             self._complain(_text(error))
-        for message in self._model.messages:
+        for message in session.model.messages:
             if message.level != "info":
                 self._complain(message.text)
 
@@ -187,62 +173,53 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
     @_answered
     def get_real(self, vrs: list[int]) -> list[float]:
         """Return Real values."""
-        return self._read(self._reals.group(vrs))
+        return self._session.read(self._reals.group(vrs))
 
     @_answered
     def get_integer(self, vrs: list[int]) -> list[int]:
         """Return Integer values and codes of enumerations."""
-        return self._read(self._integers.group(vrs))
+        return self._session.read(self._integers.group(vrs))
 
     @_answered
     def get_boolean(self, vrs: list[int]) -> list[bool]:
         """Return Boolean values."""
-        return self._read(self._booleans.group(vrs))
+        return self._session.read(self._booleans.group(vrs))
 
     @_answered
     def get_string(self, vrs: list[int]) -> list[str]:
         """Return String values."""
-        return self._strings.group(vrs).read(self._model.texts)
+        return self._session.read_texts(self._strings.group(vrs))
 
     @_answered
     def set_real(self, vrs: list[int], values: list[float]) -> None:
         """Set Real inputs or parameters."""
-        self._write(self._reals.writable(vrs), values, self._model.record)
+        self._session.write(self._reals.writable(vrs), values)
 
     @_answered
     def set_integer(self, vrs: list[int], values: list[int]) -> None:
         """Set Integer and enumeration inputs or parameters."""
-        self._write(self._integers.writable(vrs), values, self._model.record)
+        self._session.write(self._integers.writable(vrs), values)
 
     @_answered
     def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
         """Set Boolean inputs or parameters, held as 0 or 1."""
-        self._write(self._booleans.writable(vrs), [int(v) for v in values], self._model.record)
+        self._session.write(self._booleans.writable(vrs), [int(v) for v in values])
 
     @_answered
     def set_string(self, vrs: list[int], values: list[str | None]) -> None:
         """Set String parameters; a null pointer counts as empty."""
-        self._write(self._strings.writable(vrs), [v or "" for v in values], self._model.texts)
+        self._session.write_texts(self._strings.writable(vrs), [v or "" for v in values])
 
     # FMU state: plain bytes, so that the static conversions cannot fail (see ``wrapper``)
 
     @_answered
     def _get_fmu_state(self) -> bytes:
-        flags = self._ready | self._pristine << 1
-        head = _STATE.pack(_MAGIC, self._phase, flags, self._stale, self._time)
-        return head + self._model.snapshot()
+        return self._session.state()
 
     @_answered
     def _set_fmu_state(self, state: bytes) -> None:
-        if len(state) < _STATE.size or not state.startswith(_MAGIC):
-            raise ModelError("these bytes are not a state of this FMU; not restored")
-        _, phase, flags, stale, time = _STATE.unpack_from(state)
-        self._restore(state[_STATE.size :], Phase(phase))
-        self._phase = Phase(phase)
-        # Before the first step nothing is lost when the model is initialized once more.
-        stepped = self._phase >= Phase.STEPPING
-        self._ready, self._pristine = bool(flags & 1) and stepped, bool(flags & 2) and stepped
-        self._stale, self._time = bool(stale), time
+        self._session.restore(state)
+        self._tell()
 
     @staticmethod
     def _fmu_state_to_bytes(state: bytes) -> bytes:
@@ -259,84 +236,12 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
         if library.is_file():
             release_at_exit(library)
 
-    def _initialize(self) -> None:
-        """Initialize a new model with what was set so far, so that repeating it starts anew."""
-        follow(self.resources or "")
-        fresh = self.create()
-        carry(self.signals, self._model, fresh)
-        self._ready = self._prepared = False
-        self._model = fresh
-        fresh.initialize()
-        self._ready = self._pristine = self._prepared = True
-        self._stale = False
-
-    def _restore(self, state: bytes, phase: Phase) -> None:
-        """Restore the model; what it holds besides its state follows from its parameters."""
-        model = self.create()
-        model.restore(state)
-        if phase is Phase.STEPPING and not (self._prepared and self._has_parameters_of(model)):
-            follow(self.resources or "")
-            model.initialize()
-            model.restore(state)
-            self._prepared = True
-            self._model = model
-        else:
-            self._model.restore(state)
-
-    def _has_parameters_of(self, other: Instance[Any]) -> bool:
-        ours = self._model
-        return asdict(ours.texts) == asdict(other.texts) and all(
-            getattr(ours.record, s.field) == getattr(other.record, s.field)
-            for s in self.signals
-            if s.causality == "parameter" and s.kind != "String"
-        )
-
-    def _refresh(self) -> None:
-        """Bring the outputs up to date with what was set since they were computed."""
-        if self._phase is Phase.INITIALIZING and not self._ready:
-            self._initialize()
-        elif self._stale and self._phase in (Phase.INITIALIZING, Phase.STEPPING):
-            self._model.refresh()
-            self._stale = False
-
-    def _read(self, group: Group) -> list[Any]:
-        if group.outputs and (self._stale or not self._ready):
-            self._refresh()
-        return group.read(self._model.record)
-
-    def _write(self, group: Group, values: list[Any], record: Any) -> None:
-        rule = "setting a fixed parameter" if group.fixed else "setting a variable"
-        next_phase(self._phase, rule)
-        for name, value in zip(group.fields, values, strict=True):
-            setattr(record, name, value)
-        self._stale = True
-        self._pristine = False
-        if group.parameters:
-            self._ready = self._phase is Phase.STEPPING
-
-    def _problem(self, current_time: float, step_size: float) -> str:
-        if self._phase is not Phase.STEPPING:
-            return f"fmi2DoStep is not allowed in phase {self._phase.name}; step discarded"
-        if not (isfinite(step_size) and step_size > 0.0):
-            return f"a step must be positive and finite, not {step_size} s; step discarded"
-        if not isfinite(current_time):
-            return f"a step must start at a finite time, not {current_time}; step discarded"
-        # Communication points are sums of steps in the importer: they may drift, not go back.
-        if current_time < self._time - 1e-9 * max(1.0, abs(self._time)):
-            return f"time went back from {self._time} s to {current_time} s; step discarded"
-        return ""
-
-    def _finish(self) -> None:
-        if not self._finished:
-            self._finished = True
-            self._model.finish()
-
     def _tell(self) -> None:
         """Hand the model's messages to the logger; importers may print them with printf."""
-        for message in self._model.messages:
+        for message in self._session.model.messages:
             status, category = _LOG[message.level]
             self.log(message.text.replace("%", "%%"), status, category)
-        self._model.messages.clear()
+        self._session.model.messages.clear()
 
     def _refuse(self, text: str) -> None:
         self._tell()
@@ -346,17 +251,3 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
     def _complain(self, text: str) -> None:
         if sys.stderr is not None:  # there is none in a windowed host
             print(f"{type(self).__name__} {self.instance_name!r}: {text}", file=sys.stderr)
-
-
-def model_signals(model: Instance[Any]) -> tuple[Signal, ...]:
-    """Return the model's variables in the order of their value references."""
-    return signals_of(model.record) + signals_of(model.texts)
-
-
-def carry(signals: tuple[Signal, ...], old: Instance[Any], new: Instance[Any]) -> None:
-    """Copy parameters and inputs from one model to another."""
-    for signal in signals:
-        if signal.causality in ("parameter", "input") and signal.kind != "String":
-            setattr(new.record, signal.field, getattr(old.record, signal.field))
-    for field in fields(old.texts):
-        setattr(new.texts, field.name, getattr(old.texts, field.name))

@@ -1,0 +1,185 @@
+"""One FMU instance without pythonfmu: the order of calls, when the model is initialized, its state.
+
+The outputs are brought up to date only when somebody reads them. The model is initialized when
+initialization mode ends, and earlier only if outputs are read in it; whatever was read, the run
+starts from what is set at the end.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from dataclasses import asdict, fields
+from math import inf, isfinite
+from typing import Any, Final
+
+from ..instance import Instance, ModelError
+from ..kernel.signals import Signal, signals_of
+from .access import Group
+from .phases import Phase, next_phase
+
+_STATE: Final = struct.Struct("<8sBBBBd")  # magic, phase, ready, pristine, stale, time
+_MAGIC: Final = b"PLDFFMU1"
+
+
+class Session:
+    """A model between instantiation and release.
+
+    Attributes:
+        create: returns a new model with default values.
+        model: the present model.
+        signals: its variables in the order of their value references.
+        phase: where the session stands.
+    """
+
+    def __init__(self, create: Callable[[], Instance[Any]]) -> None:
+        self.create = create
+        self.model = create()
+        self.signals = signals_of(self.model.record) + signals_of(self.model.texts)
+        self.phase = Phase.INSTANTIATED
+        self._time = -inf
+        self._prepared = False  # this model was initialized
+        self._ready = False  # the outputs belong to the parameters
+        self._pristine = False  # nothing was set since the model was initialized
+        self._stale = False  # the outputs do not belong to the inputs
+        self._finished = False
+
+    def set_start(self, time: float) -> None:
+        """Take over the start time; ModelError unless it is finite."""
+        next_phase(self.phase, "fmi2SetupExperiment")
+        if not isfinite(time):
+            raise ModelError(f"the start time must be finite, not {time}")
+        self._time = time
+
+    def enter(self) -> None:
+        """Enter initialization mode."""
+        self.phase = next_phase(self.phase, "fmi2EnterInitializationMode")
+
+    def exit(self) -> None:
+        """Leave initialization mode; ModelError, and the mode stays, if the model refuses."""
+        phase = next_phase(self.phase, "fmi2ExitInitializationMode")
+        if not (self._ready and self._pristine):
+            self._initialize()
+        self.phase = phase
+
+    def problem(self, time: float, step_s: float) -> str:
+        """Return why a step makes no sense, an empty string if it does."""
+        if self.phase is not Phase.STEPPING:
+            return f"fmi2DoStep is not allowed in phase {self.phase.name}; step discarded"
+        if not (isfinite(step_s) and step_s > 0.0):
+            return f"a step must be positive and finite, not {step_s} s; step discarded"
+        if not isfinite(time):
+            return f"a step must start at a finite time, not {time}; step discarded"
+        # Communication points are sums of steps in the importer: they may drift, not go back.
+        if time < self._time - 1e-9 * max(1.0, abs(self._time)):
+            return f"time went back from {self._time} s to {time} s; step discarded"
+        return ""
+
+    def step(self, time: float, step_s: float) -> None:
+        """Advance by a step that makes sense."""
+        self.model.step(step_s)
+        self._time = time + step_s
+        self._stale = False
+
+    def terminate(self) -> None:
+        """End the run."""
+        self.phase = next_phase(self.phase, "fmi2Terminate")
+        self.finish()
+
+    def finish(self) -> None:
+        """Let the model do what the end of a run asks for, once in the life of the session."""
+        if not self._finished:
+            self._finished = True
+            self.model.finish()
+
+    def read(self, group: Group) -> list[Any]:
+        """Return numeric values, up to date."""
+        if group.outputs and (self._stale or not self._ready):
+            self._refresh()
+        return group.read(self.model.record)
+
+    def read_texts(self, group: Group) -> list[str]:
+        """Return String values."""
+        return group.read(self.model.texts)
+
+    def write(self, group: Group, values: list[Any]) -> None:
+        """Set numeric values; ModelError if that is not allowed in this phase."""
+        self._write(group, values, self.model.record)
+
+    def write_texts(self, group: Group, values: list[str]) -> None:
+        """Set String values."""
+        self._write(group, values, self.model.texts)
+
+    def state(self) -> bytes:
+        """Return everything that a run depends on."""
+        flags = (self._ready, self._pristine, self._stale)
+        return _STATE.pack(_MAGIC, self.phase, *flags, self._time) + self.model.snapshot()
+
+    def restore(self, state: bytes) -> None:
+        """Take over a state; ModelError, and nothing changed, if it is not one of this FMU."""
+        if len(state) < _STATE.size or not state.startswith(_MAGIC):
+            raise ModelError("these bytes are not a state of this FMU; not restored")
+        _, phase, ready, pristine, stale, time = _STATE.unpack_from(state)
+        self._restore_model(state[_STATE.size :], Phase(phase))
+        self.phase = Phase(phase)
+        # Before the first step nothing is lost when the model is initialized once more.
+        stepped = self.phase >= Phase.STEPPING
+        self._ready, self._pristine = bool(ready and stepped), bool(pristine and stepped)
+        self._stale, self._time = bool(stale), time
+
+    def _initialize(self) -> None:
+        """Initialize a new model with what was set so far, so that repeating it starts anew."""
+        fresh = self.create()
+        _carry(self.signals, self.model, fresh)
+        self._ready = self._prepared = False
+        self.model = fresh
+        fresh.initialize()
+        self._ready = self._pristine = self._prepared = True
+        self._stale = False
+
+    def _restore_model(self, state: bytes, phase: Phase) -> None:
+        """Restore the model; what it holds besides its state follows from its parameters."""
+        model = self.create()
+        model.restore(state)
+        if phase is Phase.STEPPING and not (self._prepared and self._has_parameters_of(model)):
+            model.initialize()
+            model.restore(state)
+            self._prepared = True
+            self.model = model
+        else:
+            self.model.restore(state)
+
+    def _has_parameters_of(self, other: Instance[Any]) -> bool:
+        ours = self.model
+        return asdict(ours.texts) == asdict(other.texts) and all(
+            getattr(ours.record, s.field) == getattr(other.record, s.field)
+            for s in self.signals
+            if s.causality == "parameter" and s.kind != "String"
+        )
+
+    def _refresh(self) -> None:
+        """Bring the outputs up to date with what was set since they were computed."""
+        if self.phase is Phase.INITIALIZING and not self._ready:
+            self._initialize()
+        elif self._stale and self.phase in (Phase.INITIALIZING, Phase.STEPPING):
+            self.model.refresh()
+            self._stale = False
+
+    def _write(self, group: Group, values: list[Any], record: Any) -> None:
+        rule = "setting a fixed parameter" if group.fixed else "setting a variable"
+        next_phase(self.phase, rule)
+        for name, value in zip(group.fields, values, strict=True):
+            setattr(record, name, value)
+        self._stale = True
+        self._pristine = False
+        if group.parameters:
+            self._ready = self.phase is Phase.STEPPING
+
+
+def _carry(signals: tuple[Signal, ...], old: Instance[Any], new: Instance[Any]) -> None:
+    """Copy parameters and inputs from one model to another."""
+    for signal in signals:
+        if signal.causality in ("parameter", "input") and signal.kind != "String":
+            setattr(new.record, signal.field, getattr(old.record, signal.field))
+    for field in fields(old.texts):
+        setattr(new.texts, field.name, getattr(old.texts, field.name))
