@@ -72,15 +72,24 @@ def drive_step(
 
 
 def refresh(st: PldfState, route: RouteArrays, profile: ProfileArrays) -> None:
-    """Recompute the outputs from new inputs without advancing time, recording or deciding."""
+    """Recompute the outputs from new inputs without advancing time, recording or deciding.
+
+    What the next step compares the new position with stays as it is: a jump must not go unnoticed
+    because somebody read an output before the step.
+    """
+    s_m, valid_ns, invalid_ns = st.s_m, st.valid_ns, st.invalid_ns
     check_inputs(st)
+    st.invalid_ns = invalid_ns
     if st.input_state == INPUT_INVALID:
         return
     locate(st, route)
-    if st.samples == 0:
-        st.localized = 0  # the car may be placed anywhere until the first step
     st.ahead_m = 0.0
     update_outputs(st, route, profile)
+    st.valid_ns = valid_ns
+    if st.samples == 0:
+        st.localized = 0  # the car may be placed anywhere until the first step
+    else:
+        st.s_m = s_m
 
 
 def check_inputs(st: PldfState) -> None:
