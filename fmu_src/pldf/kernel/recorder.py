@@ -21,11 +21,12 @@ def record_sample(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None
     if st.samples > 0 and st.time_ns <= st.previous_ns:
         return
     _count_time(st)
-    _follow_intervention(st, trace)
-    _advance_knots(st, route, trace)
+    if not _is_stray(st, route):
+        _follow_intervention(st, trace)
+        _advance_knots(st, route, trace)
+        st.previous_s_m = st.s_m
     st.samples += 1
     st.previous_ns = st.time_ns
-    st.previous_s_m = st.s_m
     st.previous_speed_mps = st.vehicle_speed_mps
     st.previous_mode = st.mode
     st.previous_brake = _brakes(st)
@@ -149,14 +150,28 @@ def _write_nodes(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None:
         trace.set_speed_mps[i] = _set_speed_for(st, route, i)
 
 
+def _is_stray(st: PldfState, route: RouteArrays) -> bool:
+    """Tell whether the sample lies off the route and was not driven to: a glitch, not a place.
+
+    Followed, a single one far ahead would end the recording, since only progress is recorded.
+    """
+    off_route = st.s_m < 0.0 or st.s_m > len(route.limit_mps) - 1.0
+    return off_route and st.samples > 0 and _is_far(st)
+
+
 def _is_hole(st: PldfState) -> bool:
     """Tell whether too long a time or too far a jump lies before this sample."""
     if st.samples == 0:
         return False
     passed_s = SECOND_NS * (st.time_ns - st.previous_ns)
+    return passed_s > st.learning_recording_gap_s or _is_far(st)
+
+
+def _is_far(st: PldfState) -> bool:
+    passed_s = SECOND_NS * (st.time_ns - st.previous_ns)
     fastest = max(st.previous_speed_mps, st.vehicle_speed_mps)
-    far = st.s_m - st.previous_s_m > fastest * passed_s + st.control_position_jump_max_m
-    return far or passed_s > st.learning_recording_gap_s
+    reach = fastest * passed_s + st.control_position_jump_max_m
+    return abs(st.s_m - st.previous_s_m) > reach
 
 
 def _set_speed_for(st: PldfState, route: RouteArrays, node: int) -> float:
