@@ -133,7 +133,7 @@ class PointMass:
             setattr(st, name, value)
         self.made.step(step_s)
         wanted = st.acceleration_request_mps2 if st.function_active else 0.0
-        wanted += 3.0 * min(max(st.driver_gas_pedal, 0.0), 1.0)
+        wanted += 3.0 * min(max(0.0, st.driver_gas_pedal), 1.0)  # a broken pedal is no pedal
         if st.driver_brake_pedal > st.control_pedal_threshold:
             wanted = -8.0 * min(st.driver_brake_pedal, 1.0)
         share = 1.0 if self.lag_s == 0.0 else min(step_s / self.lag_s, 1.0)

@@ -190,7 +190,7 @@ def test_trace_is_the_resampled_recording(steps: list[tuple[float, float]], star
         elif place == d[-1]:
             v[-1] = min(v[-1], speed)
     first, count = made.record.first_node, made.record.nodes
-    nodes = np.arange(max(np.ceil(d[0]), 0.0), np.floor(d[-1]) + 1.0)
+    nodes = np.arange(max(np.ceil(d[0] - 1e-9), 0.0), np.floor(d[-1]) + 1.0)
     assert count == len(nodes)
     if count:
         assert first == nodes[0]
