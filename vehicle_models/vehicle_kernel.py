@@ -33,7 +33,7 @@ def vehicle_start(st: VehicleState, grade: Floats) -> None:
     st.brake_force_n = 0.0
     load = road_load_n(st, grade)
     if st.speed_mps > 0.0 and load > 0.0:
-        st.drive_force_n = min(load, drive_force_max_n(st, grade))
+        st.drive_force_n = min(load, drive_force_max_n(st, load))
     elif st.speed_mps > 0.0:
         st.brake_force_n = -load
     vehicle_refresh(st, grade)
@@ -42,40 +42,53 @@ def vehicle_start(st: VehicleState, grade: Floats) -> None:
 def vehicle_step(st: VehicleState, grade: Floats, step_s: float) -> None:
     """Advance by ``step_s`` seconds in equal internal steps of at most 10 ms."""
     # The margin keeps a communication step of 0.1 s plus rounding at 10 internal steps.
+    read_inputs(st)
     count = max(1, floor(step_s / INTERNAL_STEP_S + 1.0 - 1e-6))
     inner_s = step_s / count
     for _ in range(count):
         _advance(st, grade, inner_s)
-    vehicle_refresh(st, grade)
+    _update_motion(st, road_load_n(st, grade))
 
 
 def vehicle_refresh(st: VehicleState, grade: Floats) -> None:
     """Recompute acceleration and jerk from state and inputs."""
+    read_inputs(st)
+    _update_motion(st, road_load_n(st, grade))
+
+
+def read_inputs(st: VehicleState) -> None:
+    """Take the inputs over: what is not a number counts as no request and released pedals."""
+    request = st.acceleration_request_mps2
     st.invalid_input = int(
-        not is_finite(st.acceleration_request_mps2)
+        not is_finite(request)
         or not is_finite(st.driver_gas_pedal)
         or not is_finite(st.driver_brake_pedal)
     )
-    load = road_load_n(st, grade)
+    st.request_mps2 = request if is_finite(request) else 0.0
+    st.gas = pedal_travel(st.driver_gas_pedal)
+    st.brake = pedal_travel(st.driver_brake_pedal)
+
+
+def _update_motion(st: VehicleState, load: float) -> None:
     inertia = st.body_mass_kg * st.body_rotating_factor
     if st.speed_mps <= 0.0 and not _leaves_standstill(st, load):
         st.acceleration_mps2 = 0.0
         st.jerk_mps3 = 0.0
         return
     st.acceleration_mps2 = (st.drive_force_n - st.brake_force_n - load) / inertia
-    drive_rate = (drive_demand_n(st, grade) - st.drive_force_n) / st.body_drive_lag_s
-    brake_rate = (brake_demand_n(st, grade) - st.brake_force_n) / st.body_brake_lag_s
+    drive_rate = (drive_demand_n(st, load) - st.drive_force_n) / st.body_drive_lag_s
+    brake_rate = (brake_demand_n(st, load) - st.brake_force_n) / st.body_brake_lag_s
     drag_rate = 2.0 * drag_n_per_v2(st) * st.speed_mps * st.acceleration_mps2
     st.jerk_mps3 = (drive_rate - brake_rate - drag_rate) / inertia
 
 
 def _advance(st: VehicleState, grade: Floats, step_s: float) -> None:
     """One internal step: lags exactly, road load by the midpoint rule."""
-    drive_demand = drive_demand_n(st, grade)
-    brake_demand = brake_demand_n(st, grade)
+    load = road_load_n(st, grade)
+    drive_demand = drive_demand_n(st, load)
+    brake_demand = brake_demand_n(st, load)
     drive = lag_mean(st.drive_force_n, drive_demand, step_s / st.body_drive_lag_s)
     brake = lag_mean(st.brake_force_n, brake_demand, step_s / st.body_brake_lag_s)
-    load = road_load_n(st, grade)
     st.drive_force_n = lag_end(st.drive_force_n, drive_demand, step_s / st.body_drive_lag_s)
     st.brake_force_n = lag_end(st.brake_force_n, brake_demand, step_s / st.body_brake_lag_s)
     if st.speed_mps <= 0.0 and not _leaves_standstill(st, load):
@@ -101,31 +114,31 @@ def _move(st: VehicleState, acceleration_mps2: float, step_s: float) -> None:
 
 def _leaves_standstill(st: VehicleState, load_n: float) -> bool:
     """Tell whether a standing car starts to move; until somebody wants that, it is held."""
-    wanted = _gas(st) > 0.0 or (st.function_active != 0 and _request_mps2(st) > 0.0)
-    held = _brake(st) > 0.0 or not wanted
+    wanted = st.gas > 0.0 or (st.function_active != 0 and st.request_mps2 > 0.0)
+    held = st.brake > 0.0 or not wanted
     return not held and st.drive_force_n - st.brake_force_n - load_n > 0.0
 
 
-def drive_demand_n(st: VehicleState, grade: Floats) -> float:
+def drive_demand_n(st: VehicleState, load_n: float) -> float:
     """Drive force asked for by request and gas pedal (N), within what the drive can give."""
-    if _brake(st) > 0.0:
+    if st.brake > 0.0:
         return 0.0
-    available = drive_force_max_n(st, grade)
-    demand = _gas(st) * available
+    available = drive_force_max_n(st, load_n)
+    demand = st.gas * available
     if st.function_active != 0:
-        demand += _request_force_n(st, grade)
+        demand += _request_force_n(st, load_n)
     return max(0.0, min(demand, available))
 
 
-def brake_demand_n(st: VehicleState, grade: Floats) -> float:
+def brake_demand_n(st: VehicleState, load_n: float) -> float:
     """Brake force (N): the pedal's, else what the request lacks, else recuperation."""
-    pedal = _brake(st)
+    pedal = st.brake
     strongest = st.body_mass_kg * st.body_rotating_factor * st.body_brake_max_mps2
     if pedal > 0.0:
         return pedal * strongest
-    gas = _gas(st)
+    gas = st.gas
     if st.function_active != 0:
-        lacking = -_request_force_n(st, grade) - gas * drive_force_max_n(st, grade)
+        lacking = -_request_force_n(st, load_n) - gas * drive_force_max_n(st, load_n)
         return max(0.0, min(lacking, strongest))
     if gas > 0.0:
         return 0.0
@@ -133,20 +146,20 @@ def brake_demand_n(st: VehicleState, grade: Floats) -> float:
     return st.body_mass_kg * st.body_rotating_factor * st.body_coast_decel_mps2 * fade
 
 
-def _request_force_n(st: VehicleState, grade: Floats) -> float:
+def _request_force_n(st: VehicleState, load_n: float) -> float:
     """Force that gives the requested acceleration on this grade at this speed (signed)."""
     inertia = st.body_mass_kg * st.body_rotating_factor
-    return inertia * _request_mps2(st) + road_load_n(st, grade)
+    return inertia * st.request_mps2 + load_n
 
 
-def drive_force_max_n(st: VehicleState, grade: Floats) -> float:
+def drive_force_max_n(st: VehicleState, load_n: float) -> float:
     """Drive force available: force limit, power limit, cut-off at the highest speed."""
     available = st.body_force_max_n
     if available * st.speed_mps > st.body_power_max_w:
         available = st.body_power_max_w / st.speed_mps
     rest = CUT_OFF_GAIN_PER_S * (st.body_speed_max_mps - st.speed_mps)
     inertia = st.body_mass_kg * st.body_rotating_factor
-    return max(0.0, min(available, inertia * rest + road_load_n(st, grade)))
+    return max(0.0, min(available, inertia * rest + load_n))
 
 
 def road_load_n(st: VehicleState, grade: Floats) -> float:
@@ -186,20 +199,6 @@ def lag_end(value: float, demand: float, x: float) -> float:
 def lag_mean(value: float, demand: float, x: float) -> float:
     """Mean of the same lag over these ``x`` time constants (no division by the step)."""
     return demand + (value - demand) / (1.0 + 0.5 * x + x * x / 12.0)
-
-
-def _request_mps2(st: VehicleState) -> float:
-    if is_finite(st.acceleration_request_mps2):
-        return st.acceleration_request_mps2
-    return 0.0
-
-
-def _gas(st: VehicleState) -> float:
-    return pedal_travel(st.driver_gas_pedal)
-
-
-def _brake(st: VehicleState) -> float:
-    return pedal_travel(st.driver_brake_pedal)
 
 
 def pedal_travel(value: float) -> float:

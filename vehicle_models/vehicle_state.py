@@ -102,5 +102,8 @@ class VehicleState(VehicleParameters):
     # memory
     drive_force_n: float = 0.0
     brake_force_n: float = 0.0
+    request_mps2: float = 0.0  # the inputs as used: finite, pedals within 0 and 1
+    gas: float = 0.0
+    brake: float = 0.0
     invalid_input: int = 0
     warned: int = 0

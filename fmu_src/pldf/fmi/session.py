@@ -18,6 +18,8 @@ from ..kernel.signals import Signal, signals_of
 from .access import Group
 from .phases import Phase, next_phase
 
+# Longer steps are a mistake in units, and their internal steps would seem to hang the simulator.
+STEP_MAX_S: Final = 60.0
 _STATE: Final = struct.Struct("<8sBBBBd")  # magic, phase, ready, pristine, stale, time
 _MAGIC: Final = b"PLDFFMU1"
 
@@ -66,8 +68,8 @@ class Session:
         """Return why a step makes no sense, an empty string if it does."""
         if self.phase is not Phase.STEPPING:
             return f"fmi2DoStep is not allowed in phase {self.phase.name}; step discarded"
-        if not (isfinite(step_s) and step_s > 0.0):
-            return f"a step must be positive and finite, not {step_s} s; step discarded"
+        if not 0.0 < step_s <= STEP_MAX_S:  # NaN compares false
+            return f"a step must be above 0 and at most {STEP_MAX_S:g} s, not {step_s}; discarded"
         if not isfinite(time):
             return f"a step must start at a finite time, not {time}; step discarded"
         # Communication points are sums of steps in the importer: they may drift, not go back.
