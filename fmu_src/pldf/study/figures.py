@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter
@@ -36,6 +37,12 @@ NAMES: Final = {
     "brake": "Brake until reactivated",
     "set_speed": "Set speed changed",
 }
+# What matplotlib would write of version and time of day.
+_PINNED: Final[dict[str, dict[str, str | None]]] = {
+    ".png": {"Software": "pldf"},
+    ".pdf": {"CreationDate": None},
+    ".svg": {"Date": None},
+}
 _STRIP: Final = 0.045  # height of the set-speed strip, share of the axes
 
 
@@ -45,10 +52,11 @@ def save(figure: Figure, path: Path) -> None:
     Raises:
         ModelError: the ending is unknown or the file cannot be written.
     """
-    metadata = {"Software": "pldf"} if path.suffix.lower() == ".png" else None
+    metadata = _PINNED.get(path.suffix.lower())
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(path, dpi=150, metadata=metadata)
+        with rc_context({"svg.hashsalt": "pldf"}):
+            figure.savefig(path, dpi=150, metadata=metadata)
     except (OSError, ValueError) as error:
         raise ModelError(f"{path}: cannot be drawn ({error}); use .png, .pdf or .svg") from error
 
