@@ -116,7 +116,7 @@ def progress_bar(total_m: float) -> Iterator[Progress]:
         redirect_stdout=False,
         redirect_stderr=False,
     ) as bar:
-        bar.add_task("", total=total_m / 1000.0)
+        bar.add_task("Getting ready", total=total_m / 1000.0)
         yield bar
 
 

@@ -29,7 +29,13 @@ BLACK, GREY, BLUE, SKY, GREEN, VERMILLION, ORANGE, PURPLE = (
 DRIVES: Final = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY, BLACK)
 STYLES: Final[dict[str, dict[str, Any]]] = {
     "gas": {"facecolor": GREEN, "alpha": 0.32, "linewidth": 0},
-    "brake": {"facecolor": VERMILLION, "alpha": 0.32, "linewidth": 0, "hatch": "////"},
+    "brake": {
+        "facecolor": VERMILLION,
+        "edgecolor": VERMILLION,
+        "alpha": 0.32,
+        "linewidth": 0,
+        "hatch": "////",
+    },
     "set_speed": {"facecolor": ORANGE, "alpha": 0.9, "linewidth": 0},
 }
 NAMES: Final = {
