@@ -1,0 +1,37 @@
+"""``pldf export``: recordings for tools that do not read CSV."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Final
+
+from ..study.exports import write_mdf4, write_parquet
+from ..study.recording import read_recording
+
+SUMMARY: Final = "Write a recording as Parquet or ASAM MDF4, with units."
+EXAMPLE: Final = "pldf export out/recordings/B1.csv --parquet b1.parquet --mdf4 b1.mf4"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``pldf export``."""
+    parser.add_argument("recording", metavar="RECORDING.csv", type=Path)
+    parser.add_argument(
+        "--parquet", type=Path, metavar="OUT", help="needs pip install 'adaptive-pldf[parquet]'"
+    )
+    parser.add_argument(
+        "--mdf4", type=Path, metavar="OUT", help="needs pip install 'adaptive-pldf[mdf]'"
+    )
+    parser.set_defaults(wrong_usage=parser.error)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Write what was asked for and say where it is."""
+    chosen = [(write_parquet, options.parquet), (write_mdf4, options.mdf4)]
+    wanted = [(write, path) for write, path in chosen if path]
+    if not wanted:
+        options.wrong_usage("say what to write: --parquet OUT, --mdf4 OUT or both")
+    recording = read_recording(options.recording)
+    for write, path in wanted:
+        write(path, recording)
+        print(f"{len(recording)} rows, {len(recording.columns)} columns in {path}")

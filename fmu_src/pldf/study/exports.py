@@ -1,0 +1,121 @@
+"""Recordings as Parquet and ASAM MDF4, with units; for tools that do not read CSV.
+
+Each needs an optional package, so nothing here is imported before it is used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from ..instance import ModelError
+from ..kernel.codes import MODE
+from .recording import COLUMNS, Recording
+
+UNITS: Final = {
+    "time_s": "s",
+    "s_m": "m",
+    "speed_mps": "m/s",
+    "acceleration_mps2": "m/s2",
+    "mode": "",
+    "gas_pedal": "1",
+    "brake_pedal": "1",
+    "set_speed_mps": "m/s",
+    "set_speed_offset_mps": "m/s",
+    "profile_mps": "m/s",
+    "base_mps": "m/s",
+    "limit_mps": "m/s",
+    "eligible": "",
+}
+
+
+def write_parquet(path: Path, recording: Recording) -> None:
+    """Write ``recording`` as Parquet: float64, ``mode`` by name, ``eligible`` as Boolean.
+
+    The unit of a column is in its field's metadata, key ``unit``; comments are in the schema's.
+
+    Raises:
+        ModelError: pyarrow is not installed, or the file cannot be written.
+    """
+    try:
+        import pyarrow as pa  # type: ignore[import-untyped]  # noqa: PLC0415 - optional
+        import pyarrow.parquet as pq  # type: ignore[import-untyped]  # noqa: PLC0415
+    except ImportError as error:
+        raise _not_installed("Parquet", "pyarrow", "parquet") from error
+    arrays, fields = [], []
+    for name in _names(recording):
+        array = pa.array(_typed(name, recording))
+        arrays.append(array.dictionary_encode() if name == "mode" else array)
+        fields.append(pa.field(name, arrays[-1].type, metadata={"unit": UNITS[name]}))
+    comments = {"comments": "\n".join(recording.comments)}
+    table = pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata=comments))
+    with _writable(path) as target:
+        pq.write_table(table, target)
+
+
+def write_mdf4(path: Path, recording: Recording) -> None:
+    """Write ``recording`` as ASAM MDF 4.10: one channel group over time, ``mode`` with its texts.
+
+    Raises:
+        ModelError: asammdf is not installed, or the file cannot be written.
+    """
+    try:
+        from asammdf import MDF, Signal  # noqa: PLC0415 - optional
+    except ImportError as error:
+        raise _not_installed("MDF4", "asammdf", "mdf") from error
+    signals = [
+        Signal(
+            samples=recording[name] if UNITS[name] else recording[name].astype(np.uint8),
+            timestamps=recording["time_s"],
+            name=name,
+            unit=UNITS[name],
+            conversion=_texts_of_codes() if name == "mode" else None,
+        )
+        for name in _names(recording)
+        if name != "time_s"
+    ]
+    with MDF(version="4.10") as file:
+        # A recording knows no date; the time of the export is not that of the drive.
+        file.start_time = datetime.fromtimestamp(0, UTC)
+        comment = "\n".join(recording.comments) or "pldf recording"
+        file.append(signals, acq_name="drive", comment=comment, common_timebase=True)
+        with _writable(path) as target:
+            file.save(target, overwrite=True, compression=1)
+
+
+def _names(recording: Recording) -> list[str]:
+    return [name for name in COLUMNS if name in recording]
+
+
+def _typed(name: str, recording: Recording) -> Any:
+    values = recording[name]
+    if name == "mode":
+        return [MODE.items[int(code)] for code in values]
+    return values != 0.0 if name == "eligible" else values
+
+
+def _texts_of_codes() -> dict[str, Any]:
+    """Return the conversion of a code to the name of the mode."""
+    codes = {f"val_{code}": float(code) for code in range(len(MODE.items))}
+    return {**codes, **{f"text_{code}": item for code, item in enumerate(MODE.items)}}
+
+
+@contextmanager
+def _writable(path: Path) -> Iterator[Path]:
+    """Make the folder of ``path`` if need be; ModelError if nothing can be written there."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        yield path
+    except OSError as error:
+        raise ModelError(f"{path}: cannot be written ({error})") from error
+
+
+def _not_installed(format_name: str, package: str, extra: str) -> ModelError:
+    return ModelError(
+        f"{format_name} needs the package {package}: pip install 'adaptive-pldf[{extra}]'"
+    )
