@@ -1,0 +1,123 @@
+"""What a simulated study is made of, as values: participants, settings, results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Final
+
+from vehicle_models.driver_state import DriverState
+
+from ..kernel.signals import Signal, signals_of
+from ..roads import Route
+from ..store import Iteration
+from .fmu import Value
+from .master import STEP_S
+from .phases import Phase
+from .recording import Recording
+
+_OF_THE_DRIVE: Final = ("kind", "script_id", "route_id", "seed")
+# The parameters of the driver model that make one driver differ from another, by field.
+DRIVER_SIGNALS: Final[dict[str, Signal]] = {
+    signal.field: signal
+    for signal in signals_of(DriverState)
+    if signal.causality == "parameter"
+    and signal.name not in ("kind", "script_id", "route_id", "seed")
+}
+
+
+@dataclass(frozen=True)
+class Participant:
+    """One simulated driver.
+
+    Attributes:
+        id: P and the number in the study: P001.
+        seed: of the driver's small irregularities in the first drive; each drive takes the next.
+        values: parameters by field of ``DriverState``; those absent keep their defaults.
+    """
+
+    id: str
+    seed: int
+    values: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def number(self) -> int:
+        """Number in the study, from 1; also the driver whose profile is learned."""
+        return int(self.id[1:])
+
+    def value(self, name: str) -> float:
+        """Return the parameter of this field, given or default."""
+        return self.values.get(name, float(DRIVER_SIGNALS[name].start))
+
+
+@dataclass(frozen=True, eq=False)
+class StudySettings:
+    """What is the same for all participants.
+
+    Attributes:
+        route: the route of every drive.
+        road: the parameters that make the FMUs use this route.
+        phases: in the order of driving; one name may occur more than once.
+        counterbalanced: every second participant drives B before A.
+        function: parameters of the driving function that differ from their defaults, by FMI name.
+        vehicle: the same of the vehicle.
+        step_s: communication step.
+        recorded: ids of the participants whose recordings and profiles are kept.
+    """
+
+    route: Route
+    road: Mapping[str, Value]
+    phases: tuple[Phase, ...]
+    counterbalanced: bool = False
+    function: Mapping[str, Value] = field(default_factory=dict)
+    vehicle: Mapping[str, Value] = field(default_factory=dict)
+    step_s: float = STEP_S
+    recorded: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class Row:
+    """One drive as a row of ``drives.csv``; shares are 0..1.
+
+    Attributes:
+        participant: id.
+        phase: A1 .. B3.
+        system: A or B.
+        position: place of the drive in this participant's order, from 1.
+        duration_s: time of the last sample.
+        pedal_rate: share of the time with a pedal intervention.
+        set_speed_rate: share of the time with a set speed set by the driver in this drive.
+        combined_rate: share of the time with either.
+        interventions: number of pedal interventions.
+        wish_error_mps: root mean square over the route's metres of the profile followed minus the
+            driver's hidden wish.
+    """
+
+    participant: str
+    phase: str
+    system: str
+    position: int
+    duration_s: float
+    pedal_rate: float
+    set_speed_rate: float
+    combined_rate: float
+    interventions: int
+    wish_error_mps: float
+
+
+ROW_FIELDS: Final = tuple(f.name for f in fields(Row))
+
+
+@dataclass(frozen=True, eq=False)
+class DriveResult:
+    """One drive of one participant.
+
+    Attributes:
+        row: the numbers of the drive.
+        recording: one row per step, if it is kept.
+        iteration: what the drive taught; None if the phase does not learn.
+    """
+
+    row: Row
+    recording: Recording | None = None
+    iteration: Iteration | None = None
