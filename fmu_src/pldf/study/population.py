@@ -1,0 +1,189 @@
+"""A population of preference drivers: how their parameters are distributed, and samples of it.
+
+The starting values are those of the study's description; what it leaves open is decided here and
+marked as decision. All laws are independent. A person is drawn by inverse transform from the
+person's own stream of uniform numbers, one number per parameter in the fixed order of ``FIELDS``:
+person k is the same person in a study of 43 and of 10,000, and moving the median of one parameter
+moves every person's value of it and nothing else (common random numbers: a smooth fit).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from math import exp
+from statistics import NormalDist
+from typing import Any, Final, Protocol
+
+import numpy as np
+
+from vehicle_models.driver_state import KMH, DriverParameters
+
+from ..instance import ModelError
+from ..kernel.signals import signals_of
+from .participants import Participant
+
+STANDARD: Final = NormalDist()
+# Each drive takes the next seed; the driver model's seeds end at 999,999,999.
+SEED_MAX: Final = 999_900_000
+
+
+class Law(Protocol):
+    """Distribution of one parameter."""
+
+    def at(self, u: float) -> float:
+        """Return the quantile of ``u``, which is above 0 and below 1."""
+
+
+@dataclass(frozen=True)
+class Normal:
+    """Normal distribution; values outside ``low``..``high`` become the nearer end."""
+
+    mean: float
+    sd: float
+    low: float = -np.inf
+    high: float = np.inf
+
+    def at(self, u: float) -> float:
+        """Return the quantile of ``u``."""
+        return min(max(self.mean + self.sd * STANDARD.inv_cdf(u), self.low), self.high)
+
+
+@dataclass(frozen=True)
+class Lognormal:
+    """Lognormal distribution; ``median`` may be negative (a deceleration). Ends as in Normal."""
+
+    median: float
+    sigma: float
+    low: float = -np.inf
+    high: float = np.inf
+
+    def at(self, u: float) -> float:
+        """Return the quantile of ``u``."""
+        return min(max(self.median * exp(self.sigma * STANDARD.inv_cdf(u)), self.low), self.high)
+
+
+@dataclass(frozen=True)
+class Uniform:
+    """Uniform distribution from ``low`` to ``high``."""
+
+    low: float
+    high: float
+
+    def at(self, u: float) -> float:
+        """Return the quantile of ``u``."""
+        return self.low + (self.high - self.low) * u
+
+
+@dataclass(frozen=True)
+class Share:
+    """Yes (1) for a ``share`` of the people, else no (0)."""
+
+    share: float
+
+    def at(self, u: float) -> float:
+        """Return 1 or 0 for ``u``."""
+        return float(u < self.share)
+
+
+LAWS: Final = {"normal": Normal, "lognormal": Lognormal, "uniform": Uniform, "share": Share}
+# Order of the uniform numbers: append only, else every person becomes another one.
+FIELDS: Final = (
+    "wish_offset_mps",
+    "wish_lateral_accel_max_mps2",
+    "wish_accel_max_mps2",
+    "wish_accel_min_mps2",
+    "wish_anticipation_s",
+    "driver_threshold_mps",
+    "driver_reaction_s",
+    "driver_overshoot",
+    "driver_reactivation_s",
+    "driver_uses_lever",
+    "driver_lever_settled_s",
+)
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """Laws of the parameters that differ from person to person, by field of ``DriverState``.
+
+    Given by the study's description are the laws without a comment. Decisions: the sigmas of
+    threshold, reaction and reactivation; the strengths, whose medians are the driver model's; that
+    the wait before the lever differs too; and all ends that are not named in the description, which
+    only keep rare draws plausible.
+    """
+
+    wish_offset_mps: Law = Normal(7.0 * KMH, 5.0 * KMH)
+    wish_lateral_accel_max_mps2: Law = Lognormal(2.9, 0.25)
+    wish_accel_max_mps2: Law = Lognormal(1.5, 0.2, low=0.5, high=3.0)  # decision
+    wish_accel_min_mps2: Law = Lognormal(-1.3, 0.2, low=-3.0, high=-0.5)  # decision
+    wish_anticipation_s: Law = Normal(2.0, 1.5, low=0.0, high=20.0)
+    driver_threshold_mps: Law = Lognormal(5.0 * KMH, 0.3, low=0.5 * KMH)  # sigma: decision
+    driver_reaction_s: Law = Lognormal(1.0, 0.3, low=0.5, high=2.0)  # sigma: decision
+    driver_overshoot: Law = Uniform(0.0, 1.2)
+    driver_reactivation_s: Law = Lognormal(2.0, 0.4, low=0.3, high=20.0)  # sigma: decision
+    driver_uses_lever: Law = Share(0.95)
+    driver_lever_settled_s: Law = Lognormal(3.0, 0.3, low=0.5, high=20.0)  # decision
+
+    def with_laws(self, laws: Mapping[str, Law]) -> Distribution:
+        """Return the same distribution with other laws for some fields."""
+        return replace(self, **laws)
+
+    def as_table(self) -> dict[str, dict[str, str | float]]:
+        """Return {public parameter name: law as table}, the form of a study file."""
+        return {_public_name(name): _law_table(getattr(self, name)) for name in FIELDS}
+
+
+def read_distribution(table: Mapping[str, Any]) -> Distribution:
+    """Return the starting values with the laws of ``table``, which has the form of ``as_table``.
+
+    Raises:
+        ModelError: unknown parameter or law, or numbers that are missing or too many.
+    """
+    fields_by_name = {_public_name(name): name for name in FIELDS}
+    laws = {}
+    for name, law in table.items():
+        if name not in fields_by_name:
+            known = ", ".join(fields_by_name)
+            raise ModelError(f'distribution: "{name}" is not a driver parameter; known: {known}')
+        laws[fields_by_name[name]] = _read_law(name, law)
+    return Distribution().with_laws(laws)
+
+
+def sample_participants(
+    count: int, seed: int, distribution: Distribution | None = None
+) -> list[Participant]:
+    """Return ``count`` people, P001 first; the same ``seed`` gives the same people."""
+    return [draw_participant(k, seed, distribution or Distribution()) for k in range(count)]
+
+
+def draw_participant(index: int, seed: int, distribution: Distribution) -> Participant:
+    """Return the person with this index, from 0, whatever the size of the study."""
+    rng = np.random.default_rng([seed, index])
+    own_seed = int(rng.integers(1, SEED_MAX, endpoint=True))
+    values: dict[str, float] = {}
+    for name in FIELDS:
+        # The open interval: a normal law has no value at 0.
+        values[name] = getattr(distribution, name).at(max(float(rng.random()), 1e-12))
+    return Participant(f"P{index + 1:03d}", own_seed, values)
+
+
+def _public_name(field: str) -> str:
+    return next(s.name for s in signals_of(DriverParameters) if s.field == field)
+
+
+def _law_table(law: Law) -> dict[str, str | float]:
+    kind = next(kind for kind, cls in LAWS.items() if isinstance(law, cls))
+    numbers = {k: v for k, v in asdict(law).items() if np.isfinite(v)}  # type: ignore[call-overload]
+    return {"law": kind, **numbers}
+
+
+def _read_law(name: str, table: Any) -> Law:
+    if not isinstance(table, Mapping) or table.get("law") not in LAWS:
+        raise ModelError(f'distribution: "{name}" needs law = one of {", ".join(LAWS)}')
+    numbers = {key: value for key, value in table.items() if key != "law"}
+    try:
+        law: Law = LAWS[table["law"]](**{key: float(value) for key, value in numbers.items()})
+    except (TypeError, ValueError) as error:
+        raise ModelError(f'distribution: "{name}": {error}') from error
+    return law
