@@ -20,7 +20,7 @@ from .phases import Phase, next_phase
 
 # Longer steps are a mistake in units, and their internal steps would seem to hang the simulator.
 STEP_MAX_S: Final = 60.0
-_STATE: Final = struct.Struct("<8sBBBBd")  # magic, phase, ready, pristine, stale, time
+_STATE: Final = struct.Struct("<8sBBBd")  # magic, phase, ready, stale, time
 _MAGIC: Final = b"PLDFFMU1"
 
 
@@ -42,7 +42,6 @@ class Session:
         self._time = -inf
         self._prepared = False  # this model was initialized
         self._ready = False  # the outputs belong to the parameters
-        self._pristine = False  # nothing was set since the model was initialized
         self._stale = False  # the outputs do not belong to the inputs
         self._finished = False
 
@@ -60,8 +59,7 @@ class Session:
     def exit(self) -> None:
         """Leave initialization mode; ModelError, and the mode stays, if the model refuses."""
         phase = next_phase(self.phase, "fmi2ExitInitializationMode")
-        if not (self._ready and self._pristine):
-            self._initialize()
+        self._refresh()
         self.phase = phase
 
     def problem(self, time: float, step_s: float) -> str:
@@ -114,19 +112,19 @@ class Session:
 
     def state(self) -> bytes:
         """Return everything that a run depends on."""
-        flags = (self._ready, self._pristine, self._stale)
-        return _STATE.pack(_MAGIC, self.phase, *flags, self._time) + self.model.snapshot()
+        head = _STATE.pack(_MAGIC, self.phase, self._ready, self._stale, self._time)
+        return head + self.model.snapshot()
 
     def restore(self, state: bytes) -> None:
         """Take over a state; ModelError, and nothing changed, if it is not one of this FMU."""
         if len(state) < _STATE.size or not state.startswith(_MAGIC):
             raise ModelError("these bytes are not a state of this FMU; not restored")
-        _, phase, ready, pristine, stale, time = _STATE.unpack_from(state)
+        _, phase, ready, stale, time = _STATE.unpack_from(state)
         self._restore_model(state[_STATE.size :], Phase(phase))
         self.phase = Phase(phase)
         # Before the first step nothing is lost when the model is initialized once more.
         stepped = self.phase >= Phase.STEPPING
-        self._ready, self._pristine = bool(ready and stepped), bool(pristine and stepped)
+        self._ready = bool(ready and stepped)
         self._stale, self._time = bool(stale), time
 
     def _initialize(self) -> None:
@@ -136,7 +134,7 @@ class Session:
         self._ready = self._prepared = False
         self.model = fresh
         fresh.initialize()
-        self._ready = self._pristine = self._prepared = True
+        self._ready = self._prepared = True
         self._stale = False
 
     def _restore_model(self, state: bytes, phase: Phase) -> None:
@@ -173,7 +171,6 @@ class Session:
         for name, value in zip(group.fields, values, strict=True):
             setattr(record, name, value)
         self._stale = True
-        self._pristine = False
         if group.parameters:
             self._ready = self.phase is Phase.STEPPING
 
