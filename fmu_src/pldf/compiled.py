@@ -77,12 +77,15 @@ def kernel() -> Namespace:
     return compile_modules(KERNEL_MODULES)
 
 
-def compile_modules(modules: Sequence[ModuleType]) -> Namespace:
+def compile_modules(modules: Sequence[ModuleType], calling: Namespace | None = None) -> Namespace:
     """Compile every function defined in ``modules`` (lazily, cached on disk); return them by name.
+
+    ``calling`` holds what was compiled before and is called by ``modules``.
 
     Raises ValueError when two modules define functions of the same name.
     """
-    shared: dict[str, Any] = {}
+    calling = calling or {}
+    shared: dict[str, Any] = {**calling}
     owners: dict[str, str] = {}
     for module in modules:
         for name, value in vars(module).items():
@@ -93,7 +96,8 @@ def compile_modules(modules: Sequence[ModuleType]) -> Namespace:
                     raise ValueError(f"{name} is defined in {owners[name]} and {module.__name__}")
                 shared[name] = value
     functions = {name: shared[name] for name in owners}
-    with _cache_folder(modules) as cached:
+    called = {sys.modules[f.py_func.__module__] for f in calling.values()}  # type: ignore[attr-defined]
+    with _cache_folder([*modules, *sorted(called, key=lambda m: m.__name__)]) as cached:
         for name, function in functions.items():
             copy = FunctionType(function.__code__, shared, name, function.__defaults__)
             copy.__module__ = function.__module__

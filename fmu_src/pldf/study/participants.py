@@ -16,6 +16,7 @@ from .master import STEP_S
 from .phases import Phase
 from .recording import Recording
 
+SEED_MAX: Final = 999_999_999
 _OF_THE_DRIVE: Final = ("kind", "script_id", "route_id", "seed")
 # The parameters of the driver model that make one driver differ from another, by field.
 DRIVER_SIGNALS: Final[dict[str, Signal]] = {
@@ -121,3 +122,22 @@ class DriveResult:
     row: Row
     recording: Recording | None = None
     iteration: Iteration | None = None
+
+
+def order_of(settings: StudySettings, participant: Participant) -> tuple[Phase, ...]:
+    """Return the phases in the order in which ``participant`` drives them.
+
+    Counterbalanced, participants with even numbers drive B first. The drives with A that B learns
+    from come before it all the same: without them there would be nothing to drive B with.
+    """
+    if not settings.counterbalanced or participant.number % 2 == 1:
+        return settings.phases
+    learned = [p for p in settings.phases if not p.apply_learned and p.learn]
+    adaptive = [p for p in settings.phases if p.apply_learned]
+    rest = [p for p in settings.phases if not p.apply_learned and not p.learn]
+    return (*learned, *adaptive, *rest)
+
+
+def seed_of(participant: Participant, drive: int) -> int:
+    """Return the driver's seed for the drive with this number, from 0, within the FMU's range."""
+    return (participant.seed + drive) % (SEED_MAX + 1)

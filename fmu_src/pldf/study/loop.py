@@ -1,0 +1,144 @@
+"""Vehicle, driver and driving function coupled in one process, in the numba subset.
+
+The order of events is that of ``master`` with the FMUs, which the results equal to the bit: all
+three step with the outputs of the last communication point (Jacobi).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from vehicle_models.driver_kernel import driver_start, driver_step
+from vehicle_models.driver_state import DriverState
+from vehicle_models.script_kernel import ScriptArrays
+from vehicle_models.vehicle_kernel import vehicle_start, vehicle_step
+from vehicle_models.vehicle_state import VehicleState
+from vehicle_models.wish_kernel import WishArrays
+
+from ..kernel.arrays import Floats, ProfileArrays, RouteArrays, TraceArrays
+from ..kernel.drive import drive_step, refresh
+from ..kernel.state import PldfState
+
+ARRIVED = 0
+STOOD_STILL = 1
+TOO_SLOW = 2
+
+
+class Models(NamedTuple):
+    """The three records."""
+
+    vehicle: VehicleState
+    driver: DriverState
+    pldf: PldfState
+
+
+class World(NamedTuple):
+    """What the three models know and remember beside their records."""
+
+    wish: WishArrays
+    script: ScriptArrays
+    route: RouteArrays
+    profile: ProfileArrays
+    trace: TraceArrays
+
+
+class Ends(NamedTuple):
+    """When a drive is over."""
+
+    length_m: float
+    step_s: float
+    steps: int  # at most
+    standstill_mps: float
+    standstill_s: float
+
+
+class Rows(NamedTuple):
+    """What is seen before each step; columns of the recording. Empty: nothing is kept."""
+
+    s_m: Floats
+    speed_mps: Floats
+    acceleration_mps2: Floats
+    mode: Floats
+    gas_pedal: Floats
+    brake_pedal: Floats
+    set_speed_mps: Floats
+    set_speed_offset_mps: Floats
+    base_mps: Floats
+    learned_delta_mps: Floats
+    limit_mps: Floats
+
+
+def run_drive(models: Models, world: World, ends: Ends, rows: Rows) -> tuple[int, int]:
+    """Drive until the end; return how it ended (code) and the number of steps made.
+
+    Inputs start at 0 where no output is known yet: the vehicle is first, the function last.
+    """
+    vehicle, driver, pldf = models
+    vehicle_start(vehicle, world.route.grade)
+    _show_vehicle_to_driver(vehicle, driver)
+    driver_start(driver)
+    _show_to_function(vehicle, driver, pldf)
+    refresh(pldf, world.route, world.profile)
+    moved = 0  # last step at which the vehicle moved
+    for k in range(ends.steps):
+        if vehicle.s_m >= ends.length_m:
+            return ARRIVED, k
+        if vehicle.speed_mps > ends.standstill_mps:
+            moved = k
+        if (k - moved) * ends.step_s > ends.standstill_s:
+            return STOOD_STILL, k
+        if k < len(rows.s_m):
+            _write_row(models, rows, k)
+        _exchange(vehicle, driver, pldf)
+        vehicle_step(vehicle, world.route.grade, ends.step_s)
+        driver_step(driver, world.wish, world.script, ends.step_s)
+        drive_step(pldf, world.route, world.profile, world.trace, ends.step_s)
+    return TOO_SLOW, ends.steps
+
+
+def _exchange(vehicle: VehicleState, driver: DriverState, pldf: PldfState) -> None:
+    """Feed every input from the output of the last communication point."""
+    _show_to_function(vehicle, driver, pldf)
+    _show_vehicle_to_driver(vehicle, driver)
+    driver.mode = pldf.mode
+    driver.target_speed_mps = pldf.target_speed_mps
+    driver.set_speed_mps = pldf.set_speed_mps
+    driver.limit_mps = pldf.limit_mps
+    vehicle.acceleration_request_mps2 = pldf.acceleration_request_mps2
+    vehicle.function_active = pldf.function_active
+    vehicle.driver_gas_pedal = driver.driver_gas_pedal
+    vehicle.driver_brake_pedal = driver.driver_brake_pedal
+
+
+def _show_vehicle_to_driver(vehicle: VehicleState, driver: DriverState) -> None:
+    driver.vehicle_s_m = vehicle.s_m
+    driver.vehicle_speed_mps = vehicle.speed_mps
+    driver.vehicle_acceleration_mps2 = vehicle.acceleration_mps2
+
+
+def _show_to_function(vehicle: VehicleState, driver: DriverState, pldf: PldfState) -> None:
+    pldf.vehicle_s_m = vehicle.s_m
+    pldf.vehicle_speed_mps = vehicle.speed_mps
+    pldf.vehicle_acceleration_mps2 = vehicle.acceleration_mps2
+    pldf.driver_gas_pedal = driver.driver_gas_pedal
+    pldf.driver_brake_pedal = driver.driver_brake_pedal
+    pldf.lever_resume = driver.lever_resume
+    pldf.lever_cancel = driver.lever_cancel
+    pldf.lever_up = driver.lever_up
+    pldf.lever_down = driver.lever_down
+    pldf.lever_up_long = driver.lever_up_long
+    pldf.lever_down_long = driver.lever_down_long
+
+
+def _write_row(models: Models, rows: Rows, k: int) -> None:
+    rows.s_m[k] = models.vehicle.s_m
+    rows.speed_mps[k] = models.vehicle.speed_mps
+    rows.acceleration_mps2[k] = models.vehicle.acceleration_mps2
+    rows.mode[k] = models.pldf.mode
+    rows.gas_pedal[k] = models.driver.driver_gas_pedal
+    rows.brake_pedal[k] = models.driver.driver_brake_pedal
+    rows.set_speed_mps[k] = models.pldf.set_speed_mps
+    rows.set_speed_offset_mps[k] = models.pldf.set_speed_offset_mps
+    rows.base_mps[k] = models.pldf.base_speed_mps
+    rows.learned_delta_mps[k] = models.pldf.hmi_learned_delta_mps
+    rows.limit_mps[k] = models.pldf.limit_mps

@@ -1,0 +1,250 @@
+"""Simulated participants in one process, on compiled kernels: what the FMUs do, far faster.
+
+A participant is the unit of work: its drives follow each other, since each learns from the last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache, lru_cache
+from math import ceil
+from typing import Any, Final, NamedTuple, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehicle_models import driver_kernel, pedal_kernel, script_kernel, vehicle_kernel, wish_kernel
+from vehicle_models.driver import ScriptedDriver
+from vehicle_models.script_kernel import ScriptArrays
+from vehicle_models.vehicle import LongitudinalVehicle
+from vehicle_models.wish_kernel import WishArrays
+
+from ..compiled import Namespace, compile_modules, kernel, pack, unpack
+from ..function import DrivingFunction, next_iteration
+from ..instance import Instance, ModelError, zeros
+from ..kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
+from ..kernel.codes import LEARN_FAITHFUL, LEARN_OFF, OFF, STANDBY
+from ..kernel.signals import signals_of
+from ..kernel.state import PldfState
+from ..roads import fingerprint, route_arrays
+from ..store import Iteration, StoredProfile
+from . import loop
+from .fmu import Value
+from .loop import ARRIVED, STOOD_STILL, Ends, Models, Rows, World
+from .master import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS
+from .participants import DriveResult, Participant, Row, StudySettings, order_of, seed_of
+from .phases import HANDS_OFF, PREFERENCE, Phase
+from .recording import COLUMNS, Recording
+from .route_facts import route_facts
+
+FloatArray = NDArray[np.float64]
+Packed = NDArray[np.void]
+
+DRIVER_MODULES: Final = (driver_kernel, pedal_kernel, script_kernel, wish_kernel)
+
+
+def simulate_participant(
+    settings: StudySettings, participant: Participant
+) -> tuple[DriveResult, ...]:
+    """Drive all phases with ``participant``, in the participant's order.
+
+    Raises:
+        ModelError: a parameter is out of range or a drive did not reach the end of the route.
+    """
+    return prepared(settings).drive(participant)
+
+
+@lru_cache(maxsize=2)
+def prepared(settings: StudySettings) -> Simulation:
+    """Return what all participants share, made once per process."""
+    return Simulation(settings)
+
+
+@cache
+def machine_code() -> Namespace:
+    """Return the compiled functions of kernel, driver and loop by name."""
+    function = kernel()
+    vehicle = compile_modules((vehicle_kernel,))
+    driver = compile_modules(DRIVER_MODULES, function)
+    called = {**function, **vehicle, **driver}
+    return {**called, **compile_modules((loop,), called)}
+
+
+class Simulation:
+    """A road and a driving function, planned once for any number of participants."""
+
+    def __init__(self, settings: StudySettings) -> None:
+        self.settings = settings
+        self.code = machine_code()
+        self.route = RouteArrays(*(np.array(column) for column in route_arrays(settings.route)))
+        self.nodes = len(self.route.limit_mps)
+        self.function = DrivingFunction()
+        set_parameters(self.function, settings.function)
+        self.vehicle = LongitudinalVehicle()
+        start = {"start_speed_mps": float(route_facts(settings.route).base_mps[0])}
+        set_parameters(self.vehicle, {**start, **settings.vehicle})
+        self.base = zeros(ProfileArrays, self.nodes)
+        st = pack(self.function.record)
+        self.code["plan_base"](st[0], self.route, self.base, zeros(Work, self.nodes))
+        self.blank = StoredProfile(0, fingerprint(settings.route), np.array(self.base.base_mps))
+
+    def drive(self, participant: Participant) -> tuple[DriveResult, ...]:
+        """Drive all phases with ``participant``."""
+        stored = StoredProfile(participant.number, self.blank.route, self.blank.base_mps)
+        person = self.person(participant)
+        results = []
+        for number, phase in enumerate(order_of(self.settings, participant)):
+            result = self._drive(person, phase, number, stored)
+            results.append(result)
+            if result.iteration is not None:
+                stored = stored.with_iteration(result.iteration)
+        return tuple(results)
+
+    def person(self, participant: Participant) -> Person:
+        """Return the driver model of ``participant`` with the wish planned."""
+        model = ScriptedDriver()
+        for name, value in participant.values.items():
+            setattr(model.record, name, value)
+        with_parameters_checked(model, f"participant {participant.id}")
+        wish = zeros(WishArrays, self.nodes)
+        st = pack(model.record)
+        self.code["prepare_wish"](st[0], self.route, wish, zeros(Work, self.nodes))
+        return Person(participant, model, wish)
+
+    def followed(self, stored: StoredProfile, phase: Phase) -> ProfileArrays:
+        """Return new arrays with the profile that a drive of ``phase`` follows."""
+        profile = ProfileArrays(*(np.array(column) for column in self.base))
+        if phase.apply_learned and stored.iterations:
+            newest = stored.iterations[-1]
+            for name in ("learned_mps", "offset_mps", "drive", "intervention"):
+                np.asarray(getattr(profile, name))[:] = getattr(newest, name)
+            st = pack(self.function.record)
+            self.code["adopt_learned"](st[0], self.route, profile, zeros(Work, self.nodes))
+        return profile
+
+    def _drive(
+        self, person: Person, phase: Phase, number: int, stored: StoredProfile
+    ) -> DriveResult:
+        world = World(
+            wish=person.wish,
+            script=zeros(ScriptArrays, 0),
+            route=self.route,
+            profile=self.followed(stored, phase),
+            trace=zeros(TraceArrays, self.nodes),
+        )
+        vehicle, driver = pack(self.vehicle.record), person.packed(phase, number)
+        pldf = self._packed_function(phase, stored)
+        ends = ends_of(self.settings)
+        kept = person.participant.id in self.settings.recorded
+        rows = zeros(Rows, ends.steps if kept else 0)
+        models = Models(*cast(Any, (vehicle[0], driver[0], pldf[0])))
+        ending, steps = self.code["run_drive"](models, world, ends, rows)
+        if ending != ARRIVED:
+            where = f"participant {person.participant.id}, drive {phase.name}"
+            raise ModelError(f"{where} was given up: {_why(ending, float(vehicle['s_m'][0]))}")
+        st = PldfState()
+        unpack(pldf, st)
+        return DriveResult(
+            row=row_of(
+                person, phase, number + 1, Outcome((steps - 1) * ends.step_s, st, world.profile)
+            ),
+            recording=_recording(rows, steps, ends.step_s) if kept else None,
+            iteration=self._learn(pldf, world, stored) if phase.learn else None,
+        )
+
+    def _packed_function(self, phase: Phase, stored: StoredProfile) -> Packed:
+        st = pack(self.function.record)
+        st["driver_id"] = stored.driver_id
+        st["apply_learned"] = phase.apply_learned
+        st["learn"] = LEARN_FAITHFUL if phase.learn else LEARN_OFF
+        st["mode"] = STANDBY if self.function.record.main_switch else OFF
+        st["profile_iteration"] = len(stored.iterations)
+        return st
+
+    def _learn(self, st: Packed, world: World, stored: StoredProfile) -> Iteration:
+        following = zeros(NextArrays, self.nodes)
+        work = zeros(Work, self.nodes)
+        self.code["learn_drive"](st[0], self.route, world.profile, world.trace, work, following)
+        record = PldfState()
+        unpack(st, record)
+        return next_iteration(record, following, stored)
+
+
+class Person(NamedTuple):
+    """A participant with the driver model and the wished speed."""
+
+    participant: Participant
+    model: ScriptedDriver
+    wish: WishArrays
+
+    def packed(self, phase: Phase, number: int) -> Packed:
+        """Return the driver's record for the drive with this number, from 0."""
+        st = pack(self.model.record)
+        st["kind"] = PREFERENCE if phase.intervenes else HANDS_OFF
+        st["seed"] = seed_of(self.participant, number)
+        return st
+
+
+class Outcome(NamedTuple):
+    """What a drive's row is made of: its time, the function's outputs, the profile followed."""
+
+    duration_s: float
+    outputs: PldfState
+    profile: ProfileArrays
+
+
+def row_of(person: Person, phase: Phase, position: int, outcome: Outcome) -> Row:
+    """Return the row of one drive."""
+    missed = np.asarray(outcome.profile.learned_mps) - np.asarray(person.wish.wish_mps)
+    return Row(
+        participant=person.participant.id,
+        phase=phase.name,
+        system=phase.name[0],
+        position=position,
+        duration_s=outcome.duration_s,
+        pedal_rate=outcome.outputs.rate_pedal,
+        set_speed_rate=outcome.outputs.rate_set_speed,
+        combined_rate=outcome.outputs.rate_combined,
+        interventions=outcome.outputs.drive_interventions,
+        wish_error_mps=float(np.sqrt(np.mean(missed * missed))),
+    )
+
+
+def set_parameters(model: Instance[Any], values: Mapping[str, Value]) -> None:
+    """Set parameters by FMI name; ModelError if one is out of range."""
+    fields = {signal.name: signal.field for signal in signals_of(model.record)}
+    for name, value in values.items():
+        setattr(model.record, fields[name], value)
+    model.check_parameters()
+
+
+def with_parameters_checked(model: Instance[Any], whose: str) -> None:
+    """Raise ModelError that says whose parameter is out of range."""
+    try:
+        model.check_parameters()
+    except ModelError as problem:
+        raise ModelError(f"{whose}: {problem}") from None
+
+
+def ends_of(settings: StudySettings) -> Ends:
+    """Return when a drive is over, as in ``master``."""
+    length_m = settings.route.nodes - 1.0
+    time_max_s = STANDSTILL_MAX_S + length_m / SLOWEST_MPS
+    steps = ceil(time_max_s / settings.step_s)
+    return Ends(length_m, settings.step_s, steps, STANDSTILL_MPS, STANDSTILL_MAX_S)
+
+
+def _why(ending: int, s_m: float) -> str:
+    if ending == STOOD_STILL:
+        return f"the vehicle stood still for {STANDSTILL_MAX_S:g} s at {s_m:.0f} m"
+    return f"the vehicle was only at {s_m:.0f} m when the time was over"
+
+
+def _recording(rows: Rows, steps: int, step_s: float) -> Recording:
+    columns: dict[str, FloatArray] = {
+        name: np.asarray(column)[:steps].copy() for name, column in rows._asdict().items()
+    }
+    columns["profile_mps"] = columns["base_mps"] + columns.pop("learned_delta_mps")
+    columns["time_s"] = np.arange(float(steps)) * step_s
+    columns["eligible"] = np.ones(steps)
+    return Recording({name: columns[name] for name in COLUMNS})
