@@ -14,7 +14,7 @@ from typing import Final
 from . import __version__
 from .instance import ModelError
 
-COMMANDS: Final = ("route", "drive", "learn", "plot", "profiles", "study", "export")
+COMMANDS: Final = ("route", "drive", "learn", "plot", "profiles", "study", "analyse", "export")
 
 
 def build_parser() -> argparse.ArgumentParser:

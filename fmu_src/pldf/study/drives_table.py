@@ -151,21 +151,24 @@ def _number(where: str, row: dict[str, str], name: str) -> float:
 def check_complete(drives: Sequence[DriveRow], needed: Collection[str], source: str) -> None:
     """Raise ModelError if a participant lacks a drive or has one twice.
 
+    A phase may have been driven several times: then the positions tell the drives apart.
+
     Args:
         drives: all drives.
         needed: phases that every participant must have driven.
         source: file or folder that they come from.
     """
-    seen: dict[tuple[str, str], DriveRow] = {}
+    seen: dict[tuple[str, str, int], DriveRow] = {}
     for drive in drives:
-        before = seen.setdefault((drive.participant, drive.phase), drive)
+        before = seen.setdefault((drive.participant, drive.phase, drive.position), drive)
         if before is not drive:
             raise ModelError(
                 f"{drive.where}: participant {drive.participant} has phase {drive.phase} already "
-                f"({before.where})"
+                f"({before.where}); a phase driven twice needs positions that differ"
             )
+    driven = {(participant, phase) for participant, phase, _ in seen}
     for participant in dict.fromkeys(drive.participant for drive in drives):
-        missing = [phase for phase in needed if (participant, phase) not in seen]
+        missing = [phase for phase in needed if (participant, phase) not in driven]
         if missing:
             raise ModelError(
                 f"{source}: participant {participant} has no drive {', '.join(missing)}; add it "

@@ -1,0 +1,119 @@
+"""``pldf analyse``: rates, scores, tests and effect sizes of a study, real or simulated."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Final, Literal
+
+from rich.console import Console
+from rich.progress import Progress
+from rich.table import Table
+
+from ..study.analysis import RATES, Analysis, Source, analyse
+from ..study.analysis_tables import write_tables
+from ..study.phases import choose_route
+from ..study.published import DRIVERS, TESTS, published_means
+from ..study.questionnaire import SCALES
+
+SUMMARY: Final = "Analyse a study, real or simulated: rates, scores, tests, effect sizes, report."
+EXAMPLE: Final = (
+    "pldf analyse out --report report.html\n"
+    "  pldf analyse laboratory --route road.xodr --without P07"
+)
+
+_NAMES: Final = {
+    "pedal": "Pedal, % of time",
+    "set_speed": "Set speed, % of time",
+    "combined": "Either, % of time",
+    "usefulness": "Usefulness, -2..2",
+    "satisfying": "Satisfying, -2..2",
+    "speed_profile": "Speed profile, 1..5",
+}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``pldf analyse``."""
+    parser.add_argument(
+        "folder", metavar="FOLDER", type=Path,
+        help="with drives.csv or recordings/PARTICIPANT_PHASE.csv, and questionnaire.csv if any",
+    )  # fmt: skip
+    parser.add_argument(
+        "--without", action="append", default=[], metavar="PARTICIPANT",
+        help="leave this participant out (repeatable)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--route", help="route driven: .xodr or .csv, or 'study'; needed if recordings lack columns"
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="FOLDER", help="tables as CSV (default: FOLDER/analysis)"
+    )
+
+
+def run(options: argparse.Namespace) -> None:
+    """Analyse, write the tables, print what was found and where it is."""
+    route = choose_route(options.route)[0] if options.route else None
+    source = Source(options.folder, route, frozenset(options.without))
+    with Progress(transient=True) as bar:
+        task = bar.add_task("recordings", total=None)
+        analysis = analyse(source, lambda done, all_: bar.update(task, completed=done, total=all_))
+    written = write_tables(analysis, options.out or options.folder / "analysis")
+    console = Console()
+    console.print(_means(analysis))
+    console.print(_tests(analysis))
+    for line in _remarks(analysis):
+        console.print(line, highlight=False)
+    print(f"Tables: {', '.join(str(path) for path in written)}.")
+
+
+def _means(analysis: Analysis) -> Table:
+    table = Table(title=f"System A against B, means of {len(analysis.participants)} participants")
+    for heading in ("", "A", "B", "A - B", "95 % interval", "paper A", "paper B"):
+        table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
+    for measure, found in analysis.comparisons.items():
+        unit = 100.0 if measure in RATES else 1.0
+        paper = published_means(measure) if measure in RATES else ()
+        change = found.difference
+        values = (found.mean_first, found.mean_second, change.value)
+        table.add_row(
+            _NAMES[measure],
+            *(f"{unit * value:.2f}" for value in values),
+            f"{unit * change.low:.2f} to {unit * change.high:.2f}",
+            *(f"{unit * value:.2f}" for value in paper),
+        )
+    return table
+
+
+def _tests(analysis: Analysis) -> Table:
+    table = Table(title="Tests, two-sided, and effect sizes (positive: B is lower)")
+    for heading in ("", "paired t", "p", "Wilcoxon", "p", "", "d_z", "r"):
+        justify: Literal["left", "right"] = "right" if heading else "left"
+        table.add_column(heading, justify=justify, no_wrap=True)
+    for measure, found in analysis.comparisons.items():
+        t, ranks = found.t, found.signed_rank
+        used = TESTS[measure].kind if measure in TESTS else ""
+        table.add_row(
+            _NAMES[measure].partition(",")[0],
+            f"t({t.df}) = {t.t:.2f}{'*' if used == 't' else ' '}",
+            f"{t.p:.2g}",
+            f"W = {ranks.w:g}, n = {ranks.pairs}{'*' if used == 'wilcoxon' else ' '}",
+            f"{ranks.p:.2g}",
+            ranks.method,
+            f"{found.d_z:.2f}",
+            f"{found.rank_biserial:.2f}",
+        )
+    return table
+
+
+def _remarks(analysis: Analysis) -> list[str]:
+    told = [f"Rates from {analysis.source}; paper: {DRIVERS} drivers, * marks the test it used."]
+    answers = analysis.questionnaire
+    if answers:
+        alphas = [f"{scale} {answers.reliability(scale):.2f}" for scale in answers.scores]
+        told.append(f"Cronbach's alpha: {', '.join(alphas)}.")
+        absent = [scale for scale in SCALES if scale not in answers.scores]
+        if absent:
+            told.append(f"Not in questionnaire.csv: {', '.join(absent)}.")
+    else:
+        told.append("No questionnaire.csv, so no scores.")
+    return told
