@@ -199,7 +199,7 @@ any_number = hs.one_of(
 )
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=25)
 @given(hs.data())
 def test_any_sequence_of_any_numbers_is_survived(data: hs.DataObject) -> None:
     made = function(ROAD, localization=data.draw(hs.sampled_from([0, XY])))
@@ -232,7 +232,7 @@ def test_outputs_are_sound_when_the_first_inputs_are_bad() -> None:
     assert_sound(made)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=25)
 @given(hs.data())
 def test_the_whole_range_of_every_parameter_can_be_driven_and_learned(data: hs.DataObject) -> None:
     chosen: dict[str, Any] = {}

@@ -13,7 +13,7 @@ from pldf.function import DrivingFunction
 from pldf.kernel.stretch import joined_speed, stretched_position
 
 BASE = 100.0 * KMH
-quick = settings(deadline=None, max_examples=30)
+quick = settings(deadline=None, max_examples=20)
 
 LIMITS = ((0.0, 100.0 * KMH), (300.0, 60.0 * KMH), (500.0, 80.0 * KMH))
 BENT_ROAD = road(900.0, LIMITS, [(120.0, 180.0, 0.008), (600.0, 680.0, 0.012)])
@@ -54,7 +54,7 @@ def assert_bounds(made: DrivingFunction, learned: Array) -> None:
     assert slopes.min() >= -3.0 - 1e-5
 
 
-@settings(deadline=None, max_examples=15)
+@settings(deadline=None, max_examples=8)
 @given(
     hs.lists(
         hs.tuples(
@@ -120,7 +120,7 @@ def test_a_hidden_wish_is_recovered_by_halving(wish_kmh: float) -> None:
     route, stored, at = road(2500.0), None, np.arange(2501.0)
     wish = np.where((at > 600.0) & (at < 1900.0), wish_kmh * KMH, BASE)
     halfway, worst = [], []
-    for _ in range(7):
+    for _ in range(6):
         made = function(route, stored)
         profile = np.array(made.profile.learned_mps)
         missing = np.abs(wish - profile)

@@ -132,7 +132,7 @@ EVENTS_BY_INPUT = {
 }
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=30)
 @given(hs.lists(hs.sampled_from(sorted(EVENTS_BY_INPUT)), max_size=12))
 def test_any_sequence_of_inputs_follows_the_table(sequence: list[str]) -> None:
     car = PointMass(function(road(300.0)))

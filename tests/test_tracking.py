@@ -41,7 +41,7 @@ class Watch:
         self.request = request
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=25)
 @given(phases, hs.floats(0.0, 40.0), hs.sampled_from([0.01, 0.02, 0.1]))
 def test_request_keeps_its_bounds_and_has_no_steps_whatever_the_driver_does(
     sequence: list[tuple[float, float, float, str]], speed_mps: float, step_s: float
@@ -57,7 +57,7 @@ def test_request_keeps_its_bounds_and_has_no_steps_whatever_the_driver_does(
             watch.step(step_s, **{contact: 1 if contact == "main_switch" else 0})
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=20)
 @given(hs.data())
 def test_request_keeps_its_bounds_with_arbitrary_inputs(data: hs.DataObject) -> None:
     made = function(ROAD)
