@@ -86,11 +86,11 @@ class Simulation:
         self.base = zeros(ProfileArrays, self.nodes)
         st = pack(self.function.record)
         self.code["plan_base"](st[0], self.route, self.base, zeros(Work, self.nodes))
-        self.blank = StoredProfile(0, fingerprint(settings.route), np.array(self.base.base_mps))
+        self.fingerprint = fingerprint(settings.route)
 
     def drive(self, participant: Participant) -> tuple[DriveResult, ...]:
         """Drive all phases with ``participant``."""
-        stored = StoredProfile(participant.number, self.blank.route, self.blank.base_mps)
+        stored = self.stored_for(participant)
         person = self.person(participant)
         results = []
         for number, phase in enumerate(order_of(self.settings, participant)):
@@ -100,12 +100,16 @@ class Simulation:
                 stored = stored.with_iteration(result.iteration)
         return tuple(results)
 
+    def stored_for(self, participant: Participant) -> StoredProfile:
+        """Return what is known about ``participant`` before the first drive."""
+        return StoredProfile(participant.number, self.fingerprint, np.array(self.base.base_mps))
+
     def person(self, participant: Participant) -> Person:
         """Return the driver model of ``participant`` with the wish planned."""
         model = ScriptedDriver()
         for name, value in participant.values.items():
             setattr(model.record, name, value)
-        with_parameters_checked(model, f"participant {participant.id}")
+        _check_parameters_of(model, f"participant {participant.id}")
         wish = zeros(WishArrays, self.nodes)
         st = pack(model.record)
         self.code["prepare_wish"](st[0], self.route, wish, zeros(Work, self.nodes))
@@ -218,7 +222,7 @@ def set_parameters(model: Instance[Any], values: Mapping[str, Value]) -> None:
     model.check_parameters()
 
 
-def with_parameters_checked(model: Instance[Any], whose: str) -> None:
+def _check_parameters_of(model: Instance[Any], whose: str) -> None:
     """Raise ModelError that says whose parameter is out of range."""
     try:
         model.check_parameters()
