@@ -111,10 +111,7 @@ def _cache_folder(modules: Sequence[ModuleType]) -> Iterator[bool]:
 
     Numba itself only notices changes in the file of the outermost function, not in its callees.
     """
-    digest = hashlib.sha256(f"{numba.__version__} {OPTIONS}".encode())
-    for module in modules:
-        digest.update(inspect.getsource(module).encode())
-    folder = _user_cache() / f"kernel-{digest.hexdigest()[:16]}"
+    folder = user_cache() / f"kernel-{digest(modules)}"
     config: Any = numba.config
     before = config.CACHE_DIR
     try:
@@ -129,7 +126,16 @@ def _cache_folder(modules: Sequence[ModuleType]) -> Iterator[bool]:
         config.CACHE_DIR = before
 
 
-def _user_cache() -> Path:
+def digest(modules: Sequence[ModuleType]) -> str:
+    """Return 16 hexadecimal digits of what compiled functions depend on: source, numba, options."""
+    found = hashlib.sha256(f"{numba.__version__} {OPTIONS}".encode())
+    for module in modules:
+        found.update(inspect.getsource(module).encode())
+    return found.hexdigest()[:16]
+
+
+def user_cache() -> Path:
+    """Return the folder for what can be made again: compiled kernels."""
     if "PLDF_CACHE" in os.environ:
         return Path(os.environ["PLDF_CACHE"])
     if sys.platform == "win32":

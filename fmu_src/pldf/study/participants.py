@@ -46,9 +46,11 @@ class Participant:
         """Number in the study, from 1; also the driver whose profile is learned."""
         return int(self.id[1:])
 
-    def value(self, name: str) -> float:
-        """Return the parameter of this field, given or default."""
-        return self.values.get(name, float(DRIVER_SIGNALS[name].start))
+    def value(self, name: str) -> float | int:
+        """Return the parameter of this field, given or default, as whole number where it is one."""
+        signal = DRIVER_SIGNALS[name]
+        value = self.values.get(name, float(signal.start))
+        return value if signal.kind == "Real" else int(value)
 
 
 @dataclass(frozen=True, eq=False)

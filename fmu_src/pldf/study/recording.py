@@ -61,6 +61,11 @@ class Recording:
 
 def write_recording(path: str | os.PathLike[str], recording: Recording) -> None:
     """Write ``recording`` as CSV, atomically; every number reads back to the same bits."""
+    replace_file(Path(path), recording_csv(recording))
+
+
+def recording_csv(recording: Recording) -> bytes:
+    """Return the content of a recording's file."""
     names = [name for name in COLUMNS if name in recording]
     texts = [_texts(name, recording[name]) for name in names]
     lines = chain(
@@ -68,7 +73,7 @@ def write_recording(path: str | os.PathLike[str], recording: Recording) -> None:
         (",".join(names),),
         (",".join(row) for row in zip(*texts, strict=True)),
     )
-    replace_file(Path(path), ("\n".join(lines) + "\n").encode())
+    return ("\n".join(lines) + "\n").encode()
 
 
 def _texts(name: str, values: FloatArray) -> list[str]:

@@ -6,6 +6,7 @@ A participant is the unit of work: its drives follow each other, since each lear
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache, lru_cache
 from math import ceil
 from typing import Any, Final, NamedTuple, cast
@@ -19,7 +20,7 @@ from vehicle_models.script_kernel import ScriptArrays
 from vehicle_models.vehicle import LongitudinalVehicle
 from vehicle_models.wish_kernel import WishArrays
 
-from ..compiled import Namespace, compile_modules, kernel, pack, unpack
+from ..compiled import KERNEL_MODULES, Namespace, compile_modules, kernel, pack, unpack
 from ..function import DrivingFunction, next_iteration
 from ..instance import Instance, ModelError, zeros
 from ..kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
@@ -33,7 +34,7 @@ from .fmu import Value
 from .loop import ARRIVED, STOOD_STILL, Ends, Models, Rows, World
 from .master import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS
 from .participants import DriveResult, Participant, Row, StudySettings, order_of, seed_of
-from .phases import HANDS_OFF, PREFERENCE, Phase
+from .phases import HANDS_OFF, PHASES, PREFERENCE, Phase
 from .recording import COLUMNS, Recording
 from .route_facts import route_facts
 
@@ -41,6 +42,7 @@ FloatArray = NDArray[np.float64]
 Packed = NDArray[np.void]
 
 DRIVER_MODULES: Final = (driver_kernel, pedal_kernel, script_kernel, wish_kernel)
+COMPILED_MODULES: Final = (*KERNEL_MODULES, vehicle_kernel, *DRIVER_MODULES, loop)
 
 
 def simulate_participant(
@@ -52,6 +54,12 @@ def simulate_participant(
         ModelError: a parameter is out of range or a drive did not reach the end of the route.
     """
     return prepared(settings).drive(participant)
+
+
+def compile_all(settings: StudySettings) -> None:
+    """Compile everything a study needs, for other processes to load from numba's cache."""
+    phases = (PHASES["A2"], PHASES["B1"])
+    simulate_participant(replace(settings, phases=phases), Participant("P001", 1))
 
 
 @lru_cache(maxsize=2)
@@ -107,8 +115,8 @@ class Simulation:
     def person(self, participant: Participant) -> Person:
         """Return the driver model of ``participant`` with the wish planned."""
         model = ScriptedDriver()
-        for name, value in participant.values.items():
-            setattr(model.record, name, value)
+        for name in participant.values:
+            setattr(model.record, name, participant.value(name))
         _check_parameters_of(model, f"participant {participant.id}")
         wish = zeros(WishArrays, self.nodes)
         st = pack(model.record)

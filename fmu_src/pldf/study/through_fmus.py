@@ -29,7 +29,9 @@ def drive_participant(
     """Drive all phases with ``participant``; see ``simulation.simulate_participant``."""
     simulation = prepared(settings)
     person = simulation.person(participant)
-    with TemporaryDirectory(prefix="pldf-", ignore_cleanup_errors=True) as folder:
+    # Where the FMUs were unpacked: it goes with them, even if this process is killed.
+    place = fmus["pldf"].folder.parent
+    with TemporaryDirectory(dir=place, ignore_cleanup_errors=True) as folder:
         return tuple(
             _drive(fmus, simulation, person, (number, phase, Path(folder)))
             for number, phase in enumerate(order_of(settings, participant))
@@ -45,7 +47,7 @@ def _drive(
     number, phase, folder = task
     settings, participant = simulation.settings, person.participant
     values: dict[str, Value] = {
-        DRIVER_SIGNALS[name].name: value for name, value in participant.values.items()
+        DRIVER_SIGNALS[name].name: participant.value(name) for name in participant.values
     }
     setting = Setting(
         route=settings.route,

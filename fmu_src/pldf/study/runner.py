@@ -1,0 +1,132 @@
+"""Hands the participants of a study to processes of this machine or to a Dask cluster.
+
+Results do not depend on where or in which order participants are driven. Only this process writes.
+"""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Generator
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing
+from importlib import import_module
+from itertools import islice
+from multiprocessing import get_context
+from typing import Any, Final
+
+from ..instance import ModelError
+from .participants import Participant
+from .results import Results
+from .simulation import compile_all
+from .unit import Done, Job, do_unit
+
+# Participants handed to each process ahead of time.
+_AHEAD: Final = 3
+# How long a scheduler may take to answer.
+_ANSWER_S: Final = 10
+
+Driven = Generator[Done, None, None]
+Run = Callable[[Job, list[Participant]], Driven]
+
+
+def run_missing(results: Results, job: Job, run: Run, progress: Callable[[Done], None]) -> None:
+    """Drive the participants without results and merge all results.
+
+    Raises:
+        ModelError: a drive failed; what is done is kept.
+    """
+    missing = results.missing()
+    if missing:
+        with closing(run(job, missing)) as driven:
+            for done in driven:
+                results.keep(done)
+                progress(done)
+    results.merge()
+
+
+def in_processes(jobs: int) -> Run:
+    """Return a way to run units in ``jobs`` processes (1: this one)."""
+
+    def run(job: Job, participants: list[Participant]) -> Driven:
+        count = min(jobs, len(participants))
+        if count == 1:
+            return (do_unit(job, one) for one in participants)
+        return _in_pool(job, participants, count)
+
+    return run
+
+
+def _in_pool(job: Job, participants: list[Participant], count: int) -> Driven:
+    compile_all(job.settings)  # once, for all processes to load
+    pool = ProcessPoolExecutor(
+        count, mp_context=get_context("spawn"), initializer=_begin, initargs=(job,)
+    )
+    try:
+        waiting = iter(participants)
+        pending = {pool.submit(_unit, one) for one in islice(waiting, _AHEAD * count)}
+        while pending:
+            finished, pending = wait(pending, return_when=FIRST_COMPLETED)
+            for future in finished:
+                yield future.result()
+                pending |= {pool.submit(_unit, one) for one in islice(waiting, 1)}
+    except BrokenProcessPool:
+        raise ModelError(
+            "a process of the study was killed (out of memory?); the participants that were done "
+            "are kept, start again to go on"
+        ) from None
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+_job: Job | None = None
+
+
+def _begin(job: Job) -> None:
+    """Prepare a process; it dies of Ctrl-C at once and in silence, who started it cleans up."""
+    global _job  # noqa: PLW0603 - the only way to hand something to a process once
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    _job = job
+
+
+def _unit(participant: Participant) -> Done:
+    assert _job is not None
+    return do_unit(_job, participant)
+
+
+def on_cluster(address: str) -> Run:
+    """Return a way to run units on the Dask cluster with the scheduler at ``address``.
+
+    The workers need this package in the same version. A unit whose worker dies runs on another.
+
+    Raises:
+        ModelError: dask.distributed is not installed or nobody answers.
+    """
+    try:
+        distributed: Any = import_module("distributed")
+    except ImportError:
+        raise ModelError(
+            "--scheduler needs dask.distributed: pip install 'adaptive-pldf[cluster]'"
+        ) from None
+
+    def run(job: Job, participants: list[Participant]) -> Driven:
+        try:
+            client = distributed.Client(address, timeout=_ANSWER_S)
+        except (OSError, ValueError) as error:
+            raise ModelError(f"--scheduler {address}: {error}") from None
+        with client:
+            # As a task, not scattered: it is made anew when the worker that holds it dies.
+            shared = client.submit(_same, job, pure=False)
+            units = [client.submit(do_unit, shared, one, pure=False) for one in participants]
+            try:
+                for unit in distributed.as_completed(units):
+                    yield unit.result()
+                    unit.release()
+            except distributed.KilledWorker as problem:
+                raise ModelError(f"--scheduler {address}: {problem}") from None
+
+    return run
+
+
+def _same(job: Job) -> Job:
+    return job

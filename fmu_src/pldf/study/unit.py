@@ -1,0 +1,72 @@
+"""The unit of work of a study: one participant. Values in, values out; it can run anywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from ..profile_file import encode
+from ..store import ProfileStore
+from .fmu import Fmu
+from .participants import DriveResult, Participant, Row, StudySettings
+from .recording import recording_csv
+from .simulation import prepared, simulate_participant
+from .through_fmus import drive_participant
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """What every unit needs.
+
+    Attributes:
+        settings: of the study.
+        fmus: drive through these unpacked FMUs; None: in process.
+    """
+
+    settings: StudySettings
+    fmus: dict[str, Fmu] | None = None
+
+
+@dataclass(frozen=True)
+class Done:
+    """What came out for one participant.
+
+    Attributes:
+        participant: id.
+        rows: one per drive, in order.
+        files: content of the files kept, by path within the study's folder.
+    """
+
+    participant: str
+    rows: tuple[Row, ...]
+    files: dict[str, bytes]
+
+
+def do_unit(job: Job, participant: Participant) -> Done:
+    """Drive all phases with one participant."""
+    if job.fmus is None:
+        drives = simulate_participant(job.settings, participant)
+    else:
+        drives = drive_participant(job.fmus, job.settings, participant)
+    kept = participant.id in job.settings.recorded
+    return Done(
+        participant.id,
+        tuple(drive.row for drive in drives),
+        _files(job.settings, participant, drives) if kept else {},
+    )
+
+
+def _files(
+    settings: StudySettings, participant: Participant, drives: Sequence[DriveResult]
+) -> dict[str, bytes]:
+    files = {
+        f"recordings/{participant.id}_{drive.row.phase}.csv": recording_csv(drive.recording)
+        for drive in drives
+        if drive.recording is not None
+    }
+    learned = tuple(drive.iteration for drive in drives if drive.iteration is not None)
+    if learned:
+        blank = prepared(settings).stored_for(participant)
+        name = ProfileStore("profiles").path(blank.driver_id, blank.route).name
+        files[f"profiles/{name}"] = encode(replace(blank, iterations=learned))
+    return files
