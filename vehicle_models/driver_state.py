@@ -11,7 +11,7 @@ from typing import Final
 
 from pldf.kernel.codes import MODE
 from pldf.kernel.signals import (
-    choice_input,
+    count_input,
     count_parameter,
     flag_output,
     flag_parameter,
@@ -152,7 +152,9 @@ class DriverPorts(DriverParameters):
     vehicle_acceleration_mps2: float = real_input(
         "Ego acceleration", "m/s2", start=0.0, low=-50.0, high=50.0
     )
-    mode: int = choice_input("Mode of the driving function", MODE, start=0)
+    mode: int = count_input(
+        f"Mode of the driving function: {MODE.legend}", start=0, low=0, high=len(MODE.items) - 1
+    )
     target_speed_mps: float = real_input(
         "Speed the function aims at here", "m/s", start=0.0, low=0.0, high=150.0
     )

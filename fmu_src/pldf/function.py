@@ -14,7 +14,6 @@ from .kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, 
 from .kernel.codes import (
     INPUT_INVALID,
     INPUT_OK,
-    LEARN_OFF,
     OFF,
     OFF_ROUTE,
     POSITION_JUMP,
@@ -141,7 +140,7 @@ class DrivingFunction(Instance[PldfState]):
 
     def finish(self) -> None:
         """Learn from the drive and save the profile; called once at its end."""
-        if self.record.learn != LEARN_OFF and self.record.nodes >= 2 and self.stored is not None:
+        if drive.learns(self.record) and self.record.nodes >= 2 and self.stored is not None:
             self._save(self.learn())
 
     def learn(self) -> Iteration:
@@ -169,7 +168,7 @@ class DrivingFunction(Instance[PldfState]):
         self._store = self._open_store()
         if self._store is None:
             st.profile_status = PROFILE_NOT_PERSISTED
-            if st.learn != LEARN_OFF or st.apply_learned:
+            if drive.learns(st) or st.apply_learned:
                 self.report("warning", NO_STORE)
             return new
         try:

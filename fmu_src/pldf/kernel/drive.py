@@ -47,6 +47,11 @@ ACCELERATION_BOUND = 1e3
 PEDAL_BOUND = 1e3
 
 
+def learns(st: PldfState) -> bool:
+    """Whether this drive is learned from when it ends."""
+    return st.learn != LEARN_OFF or st.learn_faithful != 0
+
+
 def drive_step(
     st: PldfState,
     route: RouteArrays,
@@ -146,5 +151,5 @@ def update_outputs(st: PldfState, route: RouteArrays, profile: ProfileArrays) ->
         st.rate_combined = st.combined_ns / st.total_ns
     st.hmi_reason = reason(st, route, profile, s_m)
     st.hmi_learned_delta_mps = value_at(profile.learned_mps, s_m) - st.base_speed_mps
-    st.hmi_learning = 1 if st.learn != LEARN_OFF and st.eligible != 0 else 0
+    st.hmi_learning = 1 if learns(st) and st.eligible != 0 else 0
     update_outlook(st, profile, s_m)

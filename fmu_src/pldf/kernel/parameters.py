@@ -32,6 +32,9 @@ class GeneralParameters:
     )
     apply_learned: int = flag_parameter("Drive the learned profile (else the base)", start=True)
     learn: int = choice_parameter("What is learned when the drive ends", LEARN, start=LEARN_OFF)
+    learn_faithful: int = flag_parameter(
+        "Learn as with learn = FAITHFUL, for importers that cannot set enumerations", start=False
+    )
     localization: int = choice_parameter(
         "Position from vehicle.s_m or from vehicle.x_m and vehicle.y_m",
         LOCALIZATION,

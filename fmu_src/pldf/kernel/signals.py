@@ -39,6 +39,11 @@ class Enumeration:
         """Return the code of ``item``; ValueError when it is not one of the items."""
         return self.items.index(item)
 
+    @property
+    def legend(self) -> str:
+        """All codes with their items, for the description of an Integer that holds one."""
+        return ", ".join(f"{code} {item}" for code, item in enumerate(self.items))
+
 
 @dataclass(frozen=True)
 class Signal:
@@ -123,6 +128,11 @@ def flag_output(description: str, *, name: str = "") -> Any:
 def count_parameter(description: str, *, start: int, low: int, high: int, name: str = "") -> Any:
     """Integer parameter, fixed during a drive."""
     return _spec("parameter", "Integer", start, description, low=low, high=high, name=name)
+
+
+def count_input(description: str, *, start: int, low: int, high: int, name: str = "") -> Any:
+    """Integer input, sampled once per communication step."""
+    return _spec("input", "Integer", start, description, low=low, high=high, name=name)
 
 
 def count_output(description: str, *, name: str = "") -> Any:

@@ -54,7 +54,8 @@ class Outputs(Inputs):
     function_active: int = flag_output(
         "The vehicle shall follow the request (ACTIVE, GAS_OVERRIDE)"
     )
-    mode: int = choice_output("Mode of the function", MODE)
+    # Numbers, not an enumeration: libcosim drops enumerations, and the driver needs the mode.
+    mode: int = count_output(f"Mode of the function: {MODE.legend}")
     target_speed_mps: float = real_output("Speed the function aims at here", "m/s")
     base_speed_mps: float = real_output("Base profile here", "m/s")
     set_speed_mps: float = real_output("Set speed in force", "m/s")
