@@ -26,11 +26,12 @@ PLDF: Final = Package(
         "compiled.py",
         "study",
         "fmi/packing",
+        "native",
         "roads/make_study_road.py",
     ),
 )
 MODELS: Final = Package(
-    ROOT / "vehicle_models", skip=("longitudinal_vehicle.py", "scripted_driver.py")
+    ROOT / "vehicle_models", skip=("longitudinal_vehicle.py", "native.py", "scripted_driver.py")
 )
 
 

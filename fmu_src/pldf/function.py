@@ -14,18 +14,16 @@ from .kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, 
 from .kernel.codes import (
     INPUT_INVALID,
     INPUT_OK,
-    OFF,
     OFF_ROUTE,
     POSITION_JUMP,
     PROFILE_BASE,
     PROFILE_LOADED,
     PROFILE_NOT_PERSISTED,
     PROFILE_REFUSED,
-    STANDBY,
     XY,
 )
 from .kernel.learning import learn_drive
-from .kernel.preparation import adopt_learned, plan_base
+from .kernel.preparation import adopt_learned, start_drive
 from .kernel.signals import text_parameter
 from .kernel.state import PldfState
 from .roads import Route, fingerprint, packed_route, read_route, route_arrays
@@ -93,10 +91,9 @@ class DrivingFunction(Instance[PldfState]):
             )
         blank = (*zeros(ProfileArrays, route.nodes), *zeros(TraceArrays, route.nodes))
         self.attach(cast(Arrays, (*route_arrays(route), *blank)))
-        self.record.mode = STANDBY if self.record.main_switch else OFF
         self._reported = INPUT_OK
         self.learned = None
-        plan_base(self.record, self.route, self.profile, self.work)
+        start_drive(self.record, self.route, self.profile, self.work)
 
     def follow(self, stored: StoredProfile) -> None:
         """Build on ``stored``: drive its newest iteration, if ``apply_learned`` is set."""

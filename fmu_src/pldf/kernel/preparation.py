@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from .arrays import Floats, ProfileArrays, RouteArrays, Work
 from .bounds import enforce_bounds
+from .codes import OFF, STANDBY
 from .hmi import find_limit_ends, find_turns
 from .planner import plan_profile, speed_caps
 from .state import PldfState
+
+
+def start_drive(st: PldfState, route: RouteArrays, profile: ProfileArrays, work: Work) -> None:
+    """Begin a drive with the base profile; the arrays of ``route`` are filled, the rest is zero."""
+    st.mode = STANDBY if st.main_switch != 0 else OFF
+    plan_base(st, route, profile, work)
 
 
 def plan_base(st: PldfState, route: RouteArrays, profile: ProfileArrays, work: Work) -> None:

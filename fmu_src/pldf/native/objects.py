@@ -1,0 +1,165 @@
+"""From kernel functions to object files: numba's frontend, LLVM's optimizer and code generator.
+
+Run as a program, since numba reads the processor to compile for when it is imported::
+
+    python -m pldf.native.objects pldf.native.driving_function:MODEL FOLDER linux64 win64
+
+Only the entry points are visible in an object; they need nothing but a few functions of the C
+library, no Python and no numba at run time.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from contextlib import suppress
+from importlib import metadata
+from pathlib import Path
+from types import FunctionType
+from typing import Any, Final
+
+import llvmlite.binding as llvm  # type: ignore[import-untyped]
+import numba
+
+from ..compiled import OPTIONS, compile_modules, pack, user_cache
+from ..disk import replace_file
+from .targets import TARGETS
+
+# What LLVM may call in place of a loop or an instruction that the target lacks.
+LIBRARY: Final = frozenset({"floor", "memcpy", "memmove", "memset", "sqrt"})
+_DECLARED: Final = re.compile(r'declare [^@]*@"?([\w.$]+)')
+
+
+def compile_objects(model: str, targets: Sequence[str]) -> dict[str, bytes]:
+    """Return the object file of ``model`` (``module:name``) for each of the ``targets``.
+
+    What was compiled from the same sources before is taken from the user's cache.
+
+    Raises:
+        ValueError: numba or the check refuses the kernel; the text names the line.
+    """
+    cache = user_cache() / f"native-{_digest(model)}"
+    missing = [target for target in targets if not (cache / f"{target}.o").is_file()]
+    if not missing:
+        return {target: (cache / f"{target}.o").read_bytes() for target in targets}
+    with tempfile.TemporaryDirectory(prefix="native_") as folder:
+        _compile(model, Path(folder), targets)
+        objects = {target: Path(folder, f"{target}.o").read_bytes() for target in targets}
+    with suppress(OSError):  # compiled anew next time: slower, not wrong
+        cache.mkdir(parents=True, exist_ok=True)
+        for target, data in objects.items():
+            replace_file(cache / f"{target}.o", data)
+    return objects
+
+
+def _compile(model: str, folder: Path, targets: Sequence[str]) -> None:
+    # The same code whatever processor builds it, and none from somebody's cache.
+    generic = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "PLDF_CACHE": str(folder)}
+    kept = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")}
+    program = [sys.executable, "-W", "ignore", "-m", __name__, model, str(folder), *targets]
+    done = subprocess.run(
+        program, env={**kept, **generic}, capture_output=True, text=True, check=False
+    )
+    if done.returncode != 0:
+        raise ValueError(f"the kernel cannot be compiled:\n{done.stderr.strip()}")
+
+
+def _digest(model: str) -> str:
+    """Return a digest of all that the object files depend on."""
+    total = hashlib.sha256(model.encode())
+    for name in ("numba", "llvmlite", "numpy"):
+        total.update(f"{name} {metadata.version(name)}\n".encode())
+    packages = [importlib.import_module(name) for name in ("pldf", model.partition(".")[0])]
+    for package in packages:
+        for path in sorted(Path(str(package.__file__)).parent.rglob("*.py")):
+            total.update(path.read_bytes())
+    return total.hexdigest()[:16]
+
+
+def main(model_name: str, folder: str, targets: Sequence[str]) -> None:
+    """Write one object file per target into ``folder``."""
+    module, _, name = model_name.partition(":")
+    model = getattr(importlib.import_module(module), name)
+    texts = _llvm_texts(model)
+    for target in targets:
+        Path(folder, f"{target}.o").write_bytes(_emit(texts, target, model.entries))
+
+
+def _llvm_texts(model: Any) -> list[str]:
+    """Return each entry point, with all that it calls, in LLVM's assembly language."""
+    kernel = compile_modules(model.modules)
+    record = numba.from_dtype(pack(model.record()).dtype)
+    types: Any = numba.types
+    cfunc: Any = numba.cfunc
+    pointers = (types.CPointer(record), types.CPointer(numba.float64))
+    signature = types.void(*pointers, numba.int64, numba.int64, numba.float64)
+    texts = []
+    for entry, function in model.entries.items():
+        body = FunctionType(function.__code__, {**function.__globals__, **kernel}, entry)
+        compiled = cfunc(signature, boundscheck=False, **OPTIONS)(body)
+        # The C name; and the root as an instruction, exact everywhere, not a call of libm.
+        text = str(compiled.inspect_llvm()).replace(compiled.native_name, f"model_{entry}")
+        texts.append(text.replace("@sqrt(", "@llvm.sqrt.f64("))
+    return texts
+
+
+def _emit(texts: Sequence[str], target: str, entries: Sequence[str]) -> bytes:
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    machine = llvm.Target.from_triple(TARGETS[target].triple).create_target_machine(
+        cpu=TARGETS[target].cpu, opt=3, reloc="pic", codemodel="small"
+    )
+    whole = None
+    for text in texts:
+        module = llvm.parse_assembly(_retarget(text, TARGETS[target].triple, machine))
+        if whole is None:
+            whole = module
+        else:
+            whole.link_in(module)
+    assert whole is not None
+    _hide_all_but(whole, {f"model_{entry}" for entry in entries})
+    options = llvm.create_pipeline_tuning_options(speed_level=3)
+    builder = llvm.create_pass_builder(machine, options)
+    builder.getModulePassManager().run(whole, builder)
+    _check(str(whole))
+    return bytes(machine.emit_object(whole))
+
+
+def _retarget(text: str, triple: str, machine: Any) -> str:
+    text = re.sub(r'target triple = "[^"]*"', f'target triple = "{triple}"', text)
+    layout = f'target datalayout = "{machine.target_data}"'
+    return re.sub(r'target datalayout = "[^"]*"', layout, text)
+
+
+def _hide_all_but(module: Any, visible: set[str]) -> None:
+    for thing in (*module.functions, *module.global_variables):
+        if not thing.is_declaration and thing.name not in visible:
+            thing.linkage = "internal"
+    missing = visible - {f.name for f in module.functions if not f.is_declaration}
+    if missing:
+        raise ValueError(f"entry points {', '.join(sorted(missing))} were not compiled")
+
+
+def _check(text: str) -> None:
+    """Refuse code that would need Python or numba at run time."""
+    names = {n for n in _DECLARED.findall(text) if not n.startswith("llvm.")}
+    names |= set(re.findall(r"^@\"?([\w.$]+)\"? = external", text, re.MULTILINE))
+    if names - LIBRARY:
+        raise ValueError(
+            f"it needs {', '.join(sorted(names - LIBRARY))}: keep to + - * / sqrt floor abs, "
+            "comparisons, records and arrays (pldf/kernel/__init__.py)"
+        )
+
+
+if __name__ == "__main__":
+    try:
+        main(sys.argv[1], sys.argv[2], sys.argv[3:])
+    except Exception as error:
+        # The last lines of numba's text name file and line of the kernel.
+        sys.exit("\n".join(str(error).strip().splitlines()[-12:]))

@@ -1,0 +1,86 @@
+"""Entry points of vehicle and driver for the native build (see ``pldf.native.model``)."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from pldf.kernel import planner
+from pldf.kernel.arrays import RouteArrays, Work
+from pldf.native.model import NativeModel, Watch
+from pldf.native.pointers import columns, record_at
+
+from . import driver_kernel, pedal_kernel, script_kernel, vehicle_kernel, wish_kernel
+from .driver import INVALID_INPUT as DRIVER_INPUT
+from .driver_kernel import driver_start, driver_step
+from .driver_state import PREFERENCE, SCRIPT, DriverState, DriverTexts
+from .script_kernel import ScriptArrays
+from .vehicle import INVALID_INPUT as VEHICLE_INPUT
+from .vehicle_kernel import vehicle_refresh, vehicle_start, vehicle_step
+from .vehicle_state import VehicleState, VehicleTexts
+from .wish_kernel import WishArrays, prepare_wish
+
+# The vehicle's block is the route alone, of which it needs the grade.
+GRADE: Final = RouteArrays._fields.index("grade")
+
+
+def _vehicle_start(record: Any, block: Any, nodes: int, rows: int, step_s: float) -> None:
+    vehicle_start(record_at(record), columns(RouteArrays, block, 0, nodes)[GRADE])
+
+
+def _vehicle_refresh(record: Any, block: Any, nodes: int, rows: int, step_s: float) -> None:
+    vehicle_refresh(record_at(record), columns(RouteArrays, block, 0, nodes)[GRADE])
+
+
+def _vehicle_step(record: Any, block: Any, nodes: int, rows: int, step_s: float) -> None:
+    vehicle_step(record_at(record), columns(RouteArrays, block, 0, nodes)[GRADE], step_s)
+
+
+VEHICLE: Final = NativeModel(
+    name="LongitudinalVehicle",
+    about="Longitudinal dynamics of one documented car with pedals",
+    record=VehicleState,
+    texts=VehicleTexts,
+    modules=(vehicle_kernel,),
+    entries={"start": _vehicle_start, "refresh": _vehicle_refresh, "step": _vehicle_step},
+    groups=(RouteArrays,),
+    kept=1,
+    route=RouteArrays,
+    route_if=("grade_from_route", 1),
+    watch=Watch("invalid_input", ("", VEHICLE_INPUT), once=True, flag="warned"),
+)
+
+ROUTE_AT: Final = len(WishArrays._fields)
+WORK_AT: Final = ROUTE_AT + len(RouteArrays._fields)
+SCRIPT_AT: Final = WORK_AT + len(Work._fields)
+
+
+def _driver_start(record: Any, block: Any, nodes: int, rows: int, step_s: float) -> None:
+    st = record_at(record)
+    if st.kind == PREFERENCE:
+        route = columns(RouteArrays, block, ROUTE_AT * nodes, nodes)
+        wish = columns(WishArrays, block, 0, nodes)
+        prepare_wish(st, route, wish, columns(Work, block, WORK_AT * nodes, nodes))
+    driver_start(st)
+
+
+def _driver_step(record: Any, block: Any, nodes: int, rows: int, step_s: float) -> None:
+    wish = columns(WishArrays, block, 0, nodes)
+    script = columns(ScriptArrays, block, SCRIPT_AT * nodes, rows)
+    driver_step(record_at(record), wish, script, step_s)
+
+
+DRIVER: Final = NativeModel(
+    name="ScriptedDriver",
+    about="Driver that follows a script or a hidden wish",
+    record=DriverState,
+    texts=DriverTexts,
+    modules=(driver_kernel, pedal_kernel, script_kernel, wish_kernel, planner),
+    entries={"start": _driver_start, "step": _driver_step},
+    groups=(WishArrays, RouteArrays, Work),
+    kept=1,
+    route=RouteArrays,
+    route_if=("kind", PREFERENCE),
+    events=ScriptArrays,
+    events_if=("kind", SCRIPT),
+    watch=Watch("invalid_input", ("", DRIVER_INPUT), once=True, flag="warned"),
+)
