@@ -91,6 +91,17 @@ def test_smooth_and_joined_to_the_unchanged_profile() -> None:
     assert learned.min() >= BASE
 
 
+def test_cross_faded_to_the_unchanged_profile_at_both_ends() -> None:
+    made = function(road(2000.0), learning_smoothing_window_m=1)
+    s_m = np.arange(0.0, 2000.5, 0.5)
+    play(made, s_m, BASE + 0.5, mode=GAS_OVERRIDE, eligible=(s_m >= 800.0) & (s_m <= 1000.0))
+    learned = made.learn().learned_mps
+    first, last = changed(made, learned)[[0, -1]]
+    fade = 0.25 * np.arange(1.0, 12.0) / 11.0
+    np.testing.assert_allclose(learned[first : first + 11] - BASE, fade, atol=1e-9)
+    np.testing.assert_allclose(learned[last : last - 11 : -1] - BASE, fade, atol=1e-9)
+
+
 # What is not
 
 

@@ -25,14 +25,23 @@ points = hs.lists(
 
 
 @quick
-@given(points, hs.lists(spans, max_size=4), hs.lists(spans, max_size=3))
+@given(
+    points,
+    hs.lists(spans, max_size=4),
+    hs.lists(spans, max_size=3),
+    hs.sampled_from([0.5, 1.0]),
+)
 def test_bounds_and_locality_hold_whatever_is_driven(
-    speed: object, gas: list[tuple[float, float]], brake: list[tuple[float, float]]
+    speed: object,
+    gas: list[tuple[float, float]],
+    brake: list[tuple[float, float]],
+    weight: float,
 ) -> None:
-    made = function(BENT_ROAD)
+    made = function(BENT_ROAD, learning_weight=weight)
     play_override(made, speed, gas, brake)  # type: ignore[arg-type]
     iteration = made.learn()
     assert_bounds(made, iteration.learned_mps)
+    assert iteration.learned_mps.min() >= 10.0 * KMH - 1e-9
     base = np.array(made.profile.base_mps)
     untouched = iteration.drive == 0.0
     np.testing.assert_array_equal(iteration.learned_mps[untouched], base[untouched])
