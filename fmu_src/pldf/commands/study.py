@@ -1,4 +1,4 @@
-"""``pldf study``: the six drives of the paper's study for one driver."""
+"""``pldf study``: a study file's participants, or the six drives for one driver."""
 
 from __future__ import annotations
 
@@ -17,24 +17,54 @@ from ..study.master import unpacked
 from ..study.phases import PHASES, PUBLISHED, Phase, Setting, choose_route
 from ..study.run import Driven, mean_rates, run_study
 from .coupled import add_coupling, chosen_values, progress_bar, tell
+from .participants import add_running, run_file
 
-SUMMARY: Final = "Drive A1, A2, A3, B1, B2, B3 with one driver; figures, rates, profiles."
+SUMMARY: Final = "Drive a study: the participants of a study file, or one driver with figures."
 EXAMPLE: Final = (
-    "pldf study --out out\n  pldf study --out out_careful --set wish.offset_mps=-2 --seed 7"
+    "pldf study studies/paper.toml --jobs 2\n"
+    "  pldf study --out out_careful --set wish.offset_mps=-2 --seed 7"
 )
+
+# Arguments that a study file takes the place of.
+_OF_ONE_DRIVER: Final = {
+    "route": "--route",
+    "driver_id": "--driver-id",
+    "seed": "--seed",
+    "step": "--step",
+    "settings": "--set",
+}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``pldf study``."""
+    add_running(parser)
     parser.add_argument(
-        "--out", type=Path, default=Path("out"), metavar="FOLDER",
-        help="where everything is written (default: out)",
+        "--out", type=Path, metavar="FOLDER",
+        help="where everything is written (default: FILE's output; without FILE: out)",
     )  # fmt: skip
     add_coupling(parser)
+    usual = {name: parser.get_default(name) for name in _OF_ONE_DRIVER}
+    parser.set_defaults(refuse=parser.error, usual=usual)
 
 
 def run(options: argparse.Namespace) -> None:
-    """Drive the study, draw it, print the table and where to look."""
+    """Drive a study file, or one driver with figures."""
+    if options.scheduler and options.fmu:
+        options.refuse("--fmu drives on this machine only, not with --scheduler")
+    if options.file is not None:
+        for name, value in options.usual.items():
+            if getattr(options, name) != value:
+                options.refuse(f"{_OF_ONE_DRIVER[name]} is for one driver; write it into FILE")
+        run_file(options)
+    elif options.scheduler or options.fmu or options.restart:
+        options.refuse("--scheduler, --fmu and --restart need a study FILE")
+    else:
+        options.out = options.out or Path("out")
+        _run_one_driver(options)
+
+
+def _run_one_driver(options: argparse.Namespace) -> None:
+    """Drive all phases, draw them, print the table and where to look."""
     route, road = choose_route(options.route)
     phases = list(PHASES.values())
     with unpacked(options.fmus) as fmus:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from difflib import get_close_matches
 from math import isfinite
 from pathlib import Path
@@ -52,16 +52,17 @@ class StudyText:
         """Raise ModelError for ``key``."""
         raise ModelError(f"{self.path}, line {line_of(self.text, key)}, {'.'.join(key)}: {problem}")
 
-    def check_keys(self, allowed: Mapping[str, Iterable[str]]) -> None:
+    def check_keys(self, allowed: Mapping[str, Collection[str]]) -> None:
         """Fail at the first table or key that is not allowed ("": the top level)."""
         for name, value in self.table.items():
             if isinstance(value, dict):
                 if name not in allowed:
                     self.unknown((name,), [table for table in allowed if table])
                 for key in value:
-                    known = list(allowed[name])
-                    if known and key not in known:
-                        self.unknown((name, key), known)
+                    if key not in allowed[name]:
+                        self.unknown((name, key), allowed[name])
+            elif name in allowed:
+                self.fail((name,), f"{shown(value)} must be a table: write [{name}]")
             elif name not in allowed[""]:
                 self.unknown((name,), [*allowed[""], *(table for table in allowed if table)])
 
@@ -76,8 +77,6 @@ class StudyText:
         """Return the value of ``key``, None if it is absent."""
         found: Any = self.table
         for part in key:
-            if not isinstance(found, dict):
-                self.fail(key[:1], f"must be a table: write [{key[0]}] and its keys below it")
             found = found.get(part)
             if found is None:
                 return None
