@@ -61,7 +61,7 @@ class Bench:
         )
         seen = self.arrays if native else tuple(views(x) for x in self.arrays)
         self.route, self.profile, self.trace, self.work, self.following = seen
-        self.plain_state = PldfState(learn=1, mode=1, **start)
+        self.plain_state = PldfState(learn=1, **start)
         self.packed = pack(self.plain_state)
         self.st: Any = self.packed.view(np.recarray)[0] if native else self.plain_state
         self.history: list[tuple[float, ...]] = []
@@ -75,7 +75,7 @@ class Bench:
 
     def drive(self) -> None:
         """Plan and drive, with a point mass for a car."""
-        self.functions["plan_base"](self.st, self.route, self.profile, self.work)
+        self.functions["start_drive"](self.st, self.route, self.profile, self.work)
         self.functions["refresh"](self.st, self.route, self.profile)
         s_m, speed, acceleration = 0.5, 21.0, 0.0
         x_m, y_m = (np.array(self.arrays[0].x_m), np.array(self.arrays[0].y_m))
