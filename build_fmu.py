@@ -1,7 +1,7 @@
-"""Build the FMUs into a folder: ``python build_fmu.py [--only NAME] [--out dist]``.
+"""Build the FMUs, and the study's SSP packages of them: ``python build_fmu.py [--out dist]``.
 
 Needs the project installed (``pip install -e .``). Ends with status 1, and a message that says why,
-unless every FMU passes the validation of fmpy. The same sources give the same bytes.
+unless every FMU and package passes the validation of fmpy. The same sources give the same bytes.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ from typing import Final
 
 from fmpy.validation import validate_fmu  # type: ignore[import-untyped]
 from pldf.fmi.packing.builder import Package, Recipe, build
+from pldf.study.master import unpacked
+from pldf.study.packages import write_packages, write_sources
 
 ROOT: Final = Path(__file__).resolve().parent
 PLDF: Final = Package(
@@ -62,7 +64,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return 1
         size_kb = path.stat().st_size / 1024
         print(f"{path} ({size_kb:.0f} KiB, {perf_counter() - start:.1f} s, valid)")
-    return 0
+    return 0 if options.only else build_packages(options)
 
 
 def build_valid(what: Recipe, out: Path) -> Path:
@@ -75,14 +77,34 @@ def build_valid(what: Recipe, out: Path) -> Path:
     return path
 
 
+def build_packages(options: argparse.Namespace) -> int:
+    """Build the SSP packages of the FMUs in ``options.out``; return the exit status."""
+    try:
+        with unpacked(options.out) as fmus:
+            written = write_packages(options.out, fmus)
+            if options.ssp_sources:
+                write_sources(options.ssp_sources, fmus)
+    except ValueError as problem:
+        print(f"build_fmu.py: {problem}", file=sys.stderr)
+        return 1
+    print(f"{options.out}: {', '.join(path.name for path in written)} (valid)")
+    return 0
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        description="Build the FMUs and validate them with fmpy.",
+        description="Build the FMUs and the study's SSP packages and validate them with fmpy.",
         epilog="example: python build_fmu.py --only AdaptivePLDF --out dist",
     )
-    parser.add_argument("--only", choices=sorted(FMUS), help="build this FMU alone")
+    parser.add_argument("--only", choices=sorted(FMUS), help="build this FMU alone, no packages")
     parser.add_argument(
         "--out", type=Path, default=Path("dist"), metavar="FOLDER", help="default: dist"
+    )
+    parser.add_argument(
+        "--ssp-sources",
+        type=Path,
+        metavar="FOLDER",
+        help="also write what the packages say as readable files (ssp/ in the repository)",
     )
     return parser
 

@@ -120,6 +120,8 @@ def _signal(variable: Any, enumerations: Mapping[str, Enumeration]) -> Signal:
         start=variable.start or "",
         description=variable.description or "",
         unit=variable.unit or (declared.unit if declared else "") or "",
+        low=None if variable.min is None else float(variable.min),
+        high=None if variable.max is None else float(variable.max),
         enumeration=enumerations.get(declared.name) if declared else None,
     )
 
