@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from math import inf, isfinite, nan
 from typing import Any
 
@@ -232,6 +233,15 @@ def test_outputs_are_sound_when_the_first_inputs_are_bad() -> None:
     assert_sound(made)
 
 
+def planner_is_stronger_than_bounds(chosen: dict[str, Any]) -> bool:
+    """Tell whether a base profile could break the bounds that learned profiles keep."""
+    whole = asdict(PldfState()) | chosen
+    return any(
+        abs(whole[f"planner_{bound}"]) > abs(whole[f"learning_{bound}"])
+        for bound in ("lateral_accel_max_mps2", "accel_max_mps2", "accel_min_mps2")
+    )
+
+
 @settings(deadline=None, max_examples=25)
 @given(hs.data())
 def test_the_whole_range_of_every_parameter_can_be_driven_and_learned(data: hs.DataObject) -> None:
@@ -244,6 +254,10 @@ def test_the_whole_range_of_every_parameter_can_be_driven_and_learned(data: hs.D
             low, high = signal.low, signal.high
         numbers = hs.integers if signal.kind != "Real" else hs.floats
         chosen[signal.field] = data.draw(numbers(low, high))  # type: ignore[arg-type]
+    if planner_is_stronger_than_bounds(chosen):
+        with pytest.raises(ModelError, match="bounds every profile"):
+            function(ROAD, **chosen)
+        return
     car = PointMass(function(ROAD, **chosen), 20.0)
     car.tip("lever_resume")
     car.tip("lever_down_long")

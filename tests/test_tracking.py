@@ -9,6 +9,7 @@ from hypothesis import strategies as hs
 from laboratory import KMH, PointMass, driving, function, road
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE, STANDBY
 from pldf.kernel.interpolation import value_at
+from pldf.kernel.tracking import target_speed
 from pldf.roads import packed_route
 
 # ISO 15622, as the specification states them.
@@ -155,3 +156,11 @@ def test_brake_never_leaves_the_function_pushing() -> None:
     car.run(1.0, driver_brake_pedal=0.5)
     assert car.made.record.mode == STANDBY
     assert car.made.record.function_active == 0
+
+
+def test_a_raised_set_speed_never_makes_the_car_slower_than_its_profile() -> None:
+    made = function(road(2000.0, ((0.0, 100.0 / 3.6),)))
+    np.asarray(made.profile.learned_mps)[:] = 115.0 / 3.6
+    made.record.manual_set_mps = 105.0 / 3.6
+    made.record.manual_end_m = 2000.0
+    assert target_speed(made.record, made.route, made.profile, 500.0) == 115.0 / 3.6

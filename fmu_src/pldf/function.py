@@ -84,6 +84,7 @@ class DrivingFunction(Instance[PldfState]):
     def prepare(self, route: Route) -> None:
         """Start anew on ``route`` with its base profile."""
         self.check_parameters()
+        check_bounds(self.record)
         self.clear_memory()
         if self.record.localization == XY and not route.has_line:
             raise ModelError(
@@ -199,6 +200,18 @@ class DrivingFunction(Instance[PldfState]):
             f"drive {iteration.number} learned from {iteration.interventions} pedal "
             f"interventions, saved in {saved.path}",
         )
+
+
+def check_bounds(st: PldfState) -> None:
+    """Raise ModelError if a base profile could break the bounds of a learned one."""
+    for bound in ("lateral_accel_max_mps2", "accel_max_mps2", "accel_min_mps2"):
+        planned = getattr(st, f"planner_{bound}")
+        allowed = getattr(st, f"learning_{bound}")
+        if abs(planned) > abs(allowed):
+            raise ModelError(
+                f"parameter learning.{bound} = {allowed:g}: it bounds every profile, so it must "
+                f"not be weaker than planner.{bound} = {planned:g}"
+            )
 
 
 def next_iteration(st: PldfState, following: NextArrays, stored: StoredProfile) -> Iteration:

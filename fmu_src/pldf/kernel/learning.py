@@ -153,12 +153,11 @@ def _end_of_segment(st: PldfState, trace: TraceArrays, work: Work, start: int, e
     """Return the last node of the run from ``start``; gaps below the segment gap merge."""
     last = start
     for i in range(start + 1, end):
-        if work.b[i] == NOT_LEARNED:
+        gap_s = trace.time_s[i] - trace.time_s[last]
+        if work.b[i] == NOT_LEARNED or (i > last + 1 and gap_s >= st.learning_segment_gap_s):
             break
         if _deviates(st, work, i):
             last = i
-        elif trace.time_s[i] - trace.time_s[last] >= st.learning_segment_gap_s:
-            break
     return last
 
 

@@ -21,7 +21,8 @@ def target_speed(st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m:
 
     A manual set speed below the automatic one caps the profile. Above it, curves still count
     (``open_mps``, or the learned speed where that is higher), the speed behind the next sign is
-    approached at the planner's deceleration, and places learned slower stay slower by as much.
+    approached at the planner's deceleration, and places learned slower stay slower by as much; but
+    a set speed that was raised never makes the car slower than its profile.
     """
     learned = value_at(profile.learned_mps, s_m)
     if st.manual_set_mps <= 0.0 or s_m >= st.manual_end_m:
@@ -33,7 +34,7 @@ def target_speed(st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m:
     approach = behind * behind - 2.0 * st.planner_accel_min_mps2 * (st.manual_end_m - s_m)
     speed = min(speed, max(learned, sqrt(approach)))
     slower = learned - value_at(profile.planned_mps, s_m)
-    return max(speed + min(slower, 0.0), 0.0)
+    return max(speed + min(slower, 0.0), learned)
 
 
 def update_request(
