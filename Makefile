@@ -28,7 +28,7 @@ study: $(BUILT)
 	$(BIN)/pldf study --out out $(STUDY)
 
 test: $(READY)
-	$(BIN)/python -m pytest $(TESTS)
+	$(BIN)/python -m pytest -n auto --dist loadfile $(TESTS)
 
 lint: $(READY)
 	$(BIN)/ruff check
