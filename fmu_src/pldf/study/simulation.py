@@ -6,6 +6,7 @@ A participant is the unit of work: its drives follow each other, since each lear
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache, lru_cache
 from math import ceil
@@ -59,7 +60,8 @@ def simulate_participant(
 def compile_all(settings: StudySettings) -> None:
     """Compile everything a study needs, for other processes to load from numba's cache."""
     phases = (PHASES["A2"], PHASES["B1"])
-    simulate_participant(replace(settings, phases=phases), Participant("P001", 1))
+    with suppress(ModelError):  # it comes again where it belongs to a participant
+        simulate_participant(replace(settings, phases=phases), Participant("P001", 1))
 
 
 @lru_cache(maxsize=2)
