@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Final, Literal
 
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
@@ -19,16 +20,16 @@ from ..study.questionnaire import SCALES
 SUMMARY: Final = "Analyse a study, real or simulated: rates, scores, tests, effect sizes, report."
 EXAMPLE: Final = (
     "pldf analyse out --report report.html\n"
-    "  pldf analyse laboratory --route road.xodr --without P07"
+    "  pldf analyse laboratory --route road.xodr --without P07 --report laboratory.html"
 )
 
 _NAMES: Final = {
-    "pedal": "Pedal, % of time",
-    "set_speed": "Set speed, % of time",
-    "combined": "Either, % of time",
-    "usefulness": "Usefulness, -2..2",
-    "satisfying": "Satisfying, -2..2",
-    "speed_profile": "Speed profile, 1..5",
+    "pedal": "Pedal, %",
+    "set_speed": "Set speed, %",
+    "combined": "Either, %",
+    "usefulness": "Usefulness",
+    "satisfying": "Satisfying",
+    "speed_profile": "Speed profile",
 }
 
 
@@ -49,6 +50,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--out", type=Path, metavar="FOLDER", help="tables as CSV (default: FOLDER/analysis)"
     )
 
+    parser.add_argument(
+        "--report", type=Path, metavar="HTML", help="write a report, one file that needs no network"
+    )
+    parser.add_argument(
+        "--driver", metavar="PARTICIPANT",
+        help="whom the report shows in detail (default: nearest to the median effect)",
+    )  # fmt: skip
+
 
 def run(options: argparse.Namespace) -> None:
     """Analyse, write the tables, print what was found and where it is."""
@@ -63,11 +72,22 @@ def run(options: argparse.Namespace) -> None:
     console.print(_tests(analysis))
     for line in _remarks(analysis):
         console.print(line, highlight=False)
-    print(f"Tables: {', '.join(str(path) for path in written)}.")
+    if options.report:
+        _write_report(analysis, source, options)
+    print(f"Tables: {', '.join(path.name for path in written)} in {written[0].parent}.")
+
+
+def _write_report(analysis: Analysis, source: Source, options: argparse.Namespace) -> None:
+    from ..study.report import write_report  # noqa: PLC0415 - slow to import
+    from ..study.report_material import collect  # noqa: PLC0415
+
+    write_report(options.report, collect(analysis, source, options.driver))
+    print(f"Report: {options.report}")
 
 
 def _means(analysis: Analysis) -> Table:
-    table = Table(title=f"System A against B, means of {len(analysis.participants)} participants")
+    title = f"System A against B, means of {len(analysis.participants)} participants"
+    table = Table(title=title, box=SIMPLE_HEAD, pad_edge=False)
     for heading in ("", "A", "B", "A - B", "95 % interval", "paper A", "paper B"):
         table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
     for measure, found in analysis.comparisons.items():
@@ -85,8 +105,10 @@ def _means(analysis: Analysis) -> Table:
 
 
 def _tests(analysis: Analysis) -> Table:
-    table = Table(title="Tests, two-sided, and effect sizes (positive: B is lower)")
-    for heading in ("", "paired t", "p", "Wilcoxon", "p", "", "d_z", "r"):
+    title = "Two-sided tests and effect sizes (positive: B is lower)"
+    table = Table(title=title, box=SIMPLE_HEAD, pad_edge=False)
+    df = next(iter(analysis.comparisons.values())).t.df
+    for heading in ("", f"t({df})", "p", "W", "n", "p", "Wilcoxon", "d_z", "r"):
         justify: Literal["left", "right"] = "right" if heading else "left"
         table.add_column(heading, justify=justify, no_wrap=True)
     for measure, found in analysis.comparisons.items():
@@ -94,9 +116,10 @@ def _tests(analysis: Analysis) -> Table:
         used = TESTS[measure].kind if measure in TESTS else ""
         table.add_row(
             _NAMES[measure].partition(",")[0],
-            f"t({t.df}) = {t.t:.2f}{'*' if used == 't' else ' '}",
+            f"{'*' if used == 't' else ''}{t.t:.2f}",
             f"{t.p:.2g}",
-            f"W = {ranks.w:g}, n = {ranks.pairs}{'*' if used == 'wilcoxon' else ' '}",
+            f"{'*' if used == 'wilcoxon' else ''}{ranks.w:g}",
+            str(ranks.pairs),
             f"{ranks.p:.2g}",
             ranks.method,
             f"{found.d_z:.2f}",

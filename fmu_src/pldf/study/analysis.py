@@ -1,15 +1,17 @@
 """The analysis of a study, the same for real and for simulated participants.
 
-Every participant counts with the mean over the two drives with interventions per system (A1 and
-A2, B1 and B2), as in the paper. Drives without interventions (A3, B3) are reported but not tested.
+Every participant counts with the mean over the drives with interventions per system (A1 and A2, B1
+and B2), as in the paper. Drives without interventions (A3, B3) are reported but not tested.
 """
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,11 +28,7 @@ from .statistics import Comparison, Interval, compare, mean_interval
 
 Floats = NDArray[np.float64]
 
-COMPARED: Final = {
-    system: tuple(name for name, phase in PHASES.items() if name[0] == system and phase.intervenes)
-    for system in "AB"
-}
-NEEDED: Final = (*COMPARED["A"], *COMPARED["B"])
+SYSTEMS: Final = ("A", "B")
 RATES: Final = Rates._fields
 PARTICIPANTS_MIN: Final = 2
 
@@ -41,7 +39,7 @@ _PEDALS_AND_LEVER: Final = ("brake_pedal", "set_speed_offset_mps")
 Progress = Callable[[int, int], None]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Source:
     """Where a study lies and what of it counts.
 
@@ -54,6 +52,31 @@ class Source:
     folder: Path
     route: Route | None = None
     without: frozenset[str] = frozenset()
+
+    @cached_property
+    def study(self) -> Mapping[str, Any]:
+        """The study file that a simulation left in the folder; empty for real participants."""
+        path = self.folder / "study.toml"
+        try:
+            return tomllib.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        except (OSError, ValueError) as error:
+            raise ModelError(f"{path}: {error}") from error
+
+    def compared(self) -> dict[str, tuple[str, ...]]:
+        """Return, per system, the drives in which the drivers intervene.
+
+        A study file may repeat phases; its drives are then numbered anew.
+        """
+        drives = self.study.get("drives", {})
+        repeats = drives.get("per_phase", 1)
+        order = [name for name in drives.get("phases", PHASES) for _ in range(repeats)]
+        found: dict[str, tuple[str, ...]] = {}
+        for system in SYSTEMS:
+            mine = [name for name in order if name[0] == system]
+            names = mine if repeats == 1 else [f"{system}{n + 1}" for n in range(len(mine))]
+            kept = [n for n, name in zip(names, mine, strict=True) if PHASES[name].intervenes]
+            found[system] = tuple(dict.fromkeys(kept))
+        return found
 
     def recordings(self) -> dict[tuple[str, str], Path]:
         """Return the recordings by (participant, phase); ModelError for a name that tells neither.
@@ -99,6 +122,7 @@ class Analysis:
     Attributes:
         drives: one row per drive.
         participants: in the order in which they appear.
+        compared: system -> its drives with interventions.
         comparisons: measure (a rate, or a scale of the questionnaire) -> A against B.
         questionnaire: None if there is none.
         source: file or folder that the rates come from.
@@ -106,9 +130,15 @@ class Analysis:
 
     drives: Sequence[DriveRow]
     participants: tuple[str, ...]
+    compared: Mapping[str, tuple[str, ...]]
     comparisons: Mapping[str, Comparison]
     questionnaire: Questionnaire | None
     source: Path
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """The drives with interventions, A before B."""
+        return tuple(phase for phases in self.compared.values() for phase in phases)
 
     @property
     def phases(self) -> list[str]:
@@ -135,7 +165,7 @@ class Analysis:
             assert self.questionnaire is not None
             scores = self.questionnaire.scores[measure]
             return np.array([scores[name, system] for name in self.participants])
-        return mean_rates(self.drives, self.participants, measure, COMPARED[system])
+        return mean_rates(self.drives, self.participants, measure, self.compared[system])
 
 
 def mean_rates(
@@ -156,7 +186,8 @@ def analyse(source: Source, progress: Progress = lambda _done, _all: None) -> An
         ModelError: naming file, line, participant and phase of what is missing or unusable.
     """
     drives, origin = _drives(source, progress)
-    check_complete(drives, NEEDED, str(origin))
+    compared = source.compared()
+    check_complete(drives, [name for names in compared.values() for name in names], str(origin))
     participants = tuple(dict.fromkeys(drive.participant for drive in drives))
     if len(participants) < PARTICIPANTS_MIN:
         raise ModelError(
@@ -166,13 +197,15 @@ def analyse(source: Source, progress: Progress = lambda _done, _all: None) -> An
     order = {name: at for at, name in enumerate(participants)}
     drives.sort(key=lambda drive: order[drive.participant])
     answers = _questionnaire(source, participants)
-    found = Analysis(tuple(drives), participants, {}, answers, origin)
+    found = Analysis(tuple(drives), participants, compared, {}, answers, origin)
     measures = (*RATES, *(answers.scores if answers else ()))
+    if not all(compared.values()):
+        raise ModelError(f"{source.folder}: no drives with both systems, so nothing to compare")
     comparisons = {
         name: compare(found.per_participant(name, "A"), found.per_participant(name, "B"))
         for name in measures
     }
-    return Analysis(found.drives, participants, comparisons, answers, origin)
+    return replace(found, comparisons=comparisons)
 
 
 def _drives(source: Source, progress: Progress) -> tuple[list[DriveRow], Path]:
@@ -199,7 +232,7 @@ def _questionnaire(source: Source, participants: Collection[str]) -> Questionnai
     answers = read_questionnaire(path, source.without)
     for scale, scores in answers.scores.items():
         for participant in participants:
-            for system in COMPARED:
+            for system in SYSTEMS:
                 if (participant, system) not in scores:
                     raise ModelError(
                         f"{path}: participant {participant} has no answers ({scale}) for system "

@@ -1,0 +1,226 @@
+"""What a report is made of, read from the folder of a study."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..function import DrivingFunction
+from ..instance import ModelError
+from ..kernel.parameters import PlannerParameters
+from ..kernel.signals import signals_of
+from ..roads import Route, fingerprint, route_arrays
+from ..stored_profile import Iteration, StoredProfile
+from .analysis import Analysis, Source
+from .phases import choose_route
+from .recording import Recording
+from .route_facts import RouteFacts, route_facts
+from .steps import Steps, explain_steps
+
+# Learned in the first drive of each pair, seen in the second.
+DEVELOPMENT: Final = (("A2", "B1"), ("B1", "B2"), ("B2", "B3"))
+TAUGHT_FIRST: Final = "A2"
+STUDY: Final = "study.toml"
+VERSIONS: Final = "versions.json"
+_SAME_LIMIT_MPS: Final = 0.1
+_SAME_LIMIT_SHARE: Final = 0.95
+
+
+@dataclass(frozen=True, eq=False)
+class DriverShown:
+    """One participant whose recordings are there.
+
+    Attributes:
+        participant: who.
+        recordings: complete, by phase, in order of the study.
+        profile: base and the profile after each learned drive (the note of its iteration), as far
+            as it was driven.
+        steps: one intervention explained; None if nothing was learned in A2.
+        acting: the drives recorded in which the driver intervenes.
+    """
+
+    participant: str
+    recordings: Mapping[str, Recording]
+    profile: StoredProfile
+    steps: Steps | None
+    acting: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Material:
+    """Everything that the report shows.
+
+    Attributes:
+        analysis: the numbers.
+        title: of the study.
+        route: the road and its base profile.
+        driver: one participant in detail; None without recordings.
+        texts: files to print in full for reproduction, by name.
+        parameters: part (pldf, vehicle) -> FMI name -> value; as far as the run wrote them.
+        participants: parameter of the simulated drivers -> smallest, median and largest value.
+    """
+
+    analysis: Analysis
+    title: str
+    route: RouteFacts
+    driver: DriverShown | None
+    texts: Mapping[str, str]
+    parameters: Mapping[str, Mapping[str, float]]
+    participants: Mapping[str, tuple[float, float, float]]
+
+    @property
+    def simulated(self) -> bool:
+        """True if a simulation wrote the folder."""
+        return STUDY in self.texts
+
+
+def collect(analysis: Analysis, source: Source, driver: str | None = None) -> Material:
+    """Read what the report of a study shows beside its numbers.
+
+    Args:
+        analysis: of the study.
+        source: where it lies.
+        driver: the participant to show in detail; None: the one nearest to the median effect.
+
+    Raises:
+        ModelError: there are no recordings of ``driver``, or they are not from the route.
+    """
+    folder = source.folder
+    texts = {
+        name: (folder / name).read_text(encoding="utf-8")
+        for name in (STUDY, VERSIONS)
+        if (folder / name).exists()
+    }
+    parameters = json.loads(texts.get(VERSIONS, "{}")).get("parameters", {})
+    route = source.route or _route_of(source)
+    function = _function(parameters.get("pldf", {}))
+    shown = _choose(analysis, source, driver)
+    return Material(
+        analysis=analysis,
+        title=str(source.study.get("title", f"Study {folder.resolve().name}")),
+        route=_facts(route, function),
+        driver=None if shown is None else _driver(shown, source, route, function),
+        texts=texts,
+        parameters=parameters,
+        participants=_parameter_ranges(folder / "participants.csv"),
+    )
+
+
+def _route_of(source: Source) -> Route:
+    """Return the route of the study file, if that can be found without knowing its place."""
+    name = str(source.study.get("road", {}).get("route", "study"))
+    if name != "study" and not name.isdigit():
+        raise ModelError(f"{source.folder}: driven on {name}; name the route with --route")
+    return choose_route(name)[0]
+
+
+def _function(values: Mapping[str, float]) -> DrivingFunction:
+    """Return a driving function with the parameters, by FMI name, of the run."""
+    function = DrivingFunction()
+    for signal in signals_of(function.record):
+        if signal.causality == "parameter" and signal.name in values:
+            setattr(function.record, signal.field, values[signal.name])
+    return function
+
+
+def _facts(route: Route, function: DrivingFunction) -> RouteFacts:
+    """Return the facts of the route as planned with the parameters of the run."""
+    function.prepare(route)
+    facts = route_facts(route)
+    default = PlannerParameters().planner_lateral_accel_max_mps2
+    faster = (function.record.planner_lateral_accel_max_mps2 / default) ** 0.5
+    return replace(
+        facts,
+        base_mps=np.array(function.profile.base_mps),
+        curve_speed_mps=faster * facts.curve_speed_mps,
+    )
+
+
+def _parameter_ranges(path: Path) -> Mapping[str, tuple[float, float, float]]:
+    """Return smallest, median and largest value of each parameter of the simulated drivers."""
+    if not path.exists():
+        return {}
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    found = {}
+    for name in rows[0] if rows else ():
+        if name not in ("participant", "seed"):
+            try:
+                values = [float(row[name]) for row in rows]
+            except ValueError as error:
+                raise ModelError(f"{path}, {name}: {error}") from error
+            found[name] = (min(values), float(np.median(values)), max(values))
+    return found
+
+
+def _choose(analysis: Analysis, source: Source, wanted: str | None) -> str | None:
+    """Return whom to show: of those recorded, who is nearest to the median fall of the rate."""
+    recorded = source.recordings()
+    complete = [p for p in analysis.participants if (p, TAUGHT_FIRST) in recorded]
+    if wanted is not None:
+        if wanted not in complete:
+            raise ModelError(
+                f"{source.folder}: no recordings/{wanted}_{TAUGHT_FIRST}.csv, so {wanted} cannot "
+                f"be shown; recorded are {', '.join(complete) or 'none'}"
+            )
+        return wanted
+    if not complete:
+        return None
+    a, b = (analysis.per_participant("combined", system) for system in "AB")
+    falls = dict(zip(analysis.participants, a - b, strict=True))
+    median = float(np.median(a - b))
+    return min(complete, key=lambda name: abs(falls[name] - median))
+
+
+def _driver(
+    participant: str, source: Source, route: Route, function: DrivingFunction
+) -> DriverShown:
+    known = replace(source, route=route)
+    paths = {phase: path for (who, phase), path in known.recordings().items() if who == participant}
+    recordings = {phase: known.read(path) for phase, path in paths.items()}
+    for phase, recording in recordings.items():
+        _require_route(paths[phase], recording, route)
+    profile = _development(recordings, route, np.array(function.profile.base_mps))
+    return DriverShown(
+        participant=participant,
+        recordings=recordings,
+        profile=profile,
+        steps=explain_steps(recordings[TAUGHT_FIRST], route, function),
+        acting=tuple(p for names in source.compared().values() for p in names if p in recordings),
+    )
+
+
+def _require_route(path: Path, recording: Recording, route: Route) -> None:
+    """Raise ModelError unless the recorded limits are those of the route."""
+    limit = np.asarray(route_arrays(route).limit_mps)
+    cell = np.clip(np.floor(recording["s_m"]), 0, len(limit) - 1).astype(np.intp)
+    same = np.abs(recording["limit_mps"] - limit[cell]) < _SAME_LIMIT_MPS
+    if np.mean(same) < _SAME_LIMIT_SHARE:
+        raise ModelError(
+            f"{path}: not driven on {route.name}: other limits; name the route with --route"
+        )
+
+
+def _development(
+    recordings: Mapping[str, Recording], route: Route, base_mps: NDArray[np.float64]
+) -> StoredProfile:
+    """Return the profiles that were followed, as the iterations of a profile."""
+    node = np.arange(float(len(base_mps)))
+    zeros = np.zeros(len(node))
+    profile = StoredProfile(0, fingerprint(route), base_mps)
+    for taught, seen in DEVELOPMENT:
+        if seen in recordings:
+            passed = np.maximum.accumulate(recordings[seen]["s_m"])
+            speeds = np.interp(node, passed, recordings[seen]["profile_mps"])
+            number = len(profile.iterations) + 1
+            profile = profile.with_iteration(
+                Iteration(number, taught, 0, speeds, zeros, zeros, zeros)
+            )
+    return profile

@@ -1,0 +1,121 @@
+"""One intervention and what learning makes of it, step by step, by the kernel's own functions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..function import DrivingFunction
+from ..kernel.interpolation import value_at
+from ..kernel.stretch import joined_speed, stretch_factor, stretched_position
+from ..roads import Route
+from .offline import Learned, learn_from
+from .recording import Recording
+
+Floats = NDArray[np.float64]
+
+AROUND_M: Final = 60.0  # shown before and behind
+_INTERESTING_MPS: Final = 1.5  # a smaller change is hard to see in a figure
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """What happens to one intervention; positions in m, speeds in m/s.
+
+    Attributes:
+        number: of the intervention in its drive, from 1.
+        kind: "gas" if the driver wanted to be faster there, else "brake".
+        alpha: stretch factor after its limits.
+        piece_m, recorded_mps: the recorded piece.
+        stretched_m: where its samples are after eq. (1).
+        joined_mps: their speeds after eq. (2).
+        node_m: the places shown, one per metre.
+        driven_mps: recorded speed of the whole drive there.
+        followed_mps: the profile that this drive followed.
+        mean_mps: after eq. (3), bounds kept.
+        learned_mps: smoothed and cross-faded: the profile of the next drive.
+    """
+
+    number: int
+    kind: Literal["gas", "brake"]
+    alpha: float
+    piece_m: Floats
+    recorded_mps: Floats
+    stretched_m: Floats
+    joined_mps: Floats
+    node_m: Floats
+    driven_mps: Floats
+    followed_mps: Floats
+    mean_mps: Floats
+    learned_mps: Floats
+
+
+def explain_steps(recording: Recording, route: Route, function: DrivingFunction) -> Steps | None:
+    """Return the steps of the most telling intervention of a drive with the base function.
+
+    Args:
+        recording: of that drive.
+        route: the route driven.
+        function: with the parameters of the run; is driven anew and left changed.
+
+    Returns:
+        None if nothing was learned from any intervention.
+    """
+    learned = learn_from(recording, route, function=function)
+    k = _most_telling(learned)
+    if k is None:
+        return None
+    # Without smoothing and cross-fade, what the same drive teaches is the mean of eq. (3).
+    function.record.learning_smoothing_window_m = 1
+    function.record.learning_fade_m = 0
+    return _steps(learned, k, function.learn().learned_mps)
+
+
+def _most_telling(learned: Learned) -> int | None:
+    """Return the intervention with the largest share of stretching among those well visible."""
+    function, new = learned.function, learned.iteration
+    change = np.abs(new.learned_mps - np.asarray(function.profile.learned_mps))
+    found = []
+    for k in range(function.record.drive_interventions):
+        mine = (new.intervention == k + 1) & (new.drive == new.number)
+        if mine.any() and function.trace.end_m[k] > function.trace.start_m[k]:
+            alpha = stretch_factor(function.record, function.route, function.trace, k)
+            seen = min(float(change[mine].max()), _INTERESTING_MPS)
+            found.append((seen, alpha, -k))
+    return -max(found)[2] if found else None
+
+
+def _steps(learned: Learned, k: int, mean_mps: Floats) -> Steps:
+    function = learned.function
+    st, trace = function.record, function.trace
+    ends = d_0, d_n = trace.start_m[k], trace.end_m[k]
+    alpha = stretch_factor(st, function.route, trace, k)
+    piece = np.concatenate(([d_0], np.arange(np.floor(d_0) + 1.0, d_n), [d_n]))
+    recorded = np.array([value_at(trace.speed_mps, d) for d in piece])
+    start = stretched_position(d_0, d_n, alpha)
+    lift = value_at(trace.speed_mps, start) - value_at(trace.speed_mps, d_0)
+    followed = np.asarray(function.profile.learned_mps)
+    first = max(int(start - AROUND_M), 0)
+    shown = slice(first, min(int(d_n + AROUND_M), len(followed) - 1) + 1)
+    wish = float(np.mean(recorded)) - float(
+        np.mean(np.interp(piece, np.arange(len(followed)), followed))
+    )
+    return Steps(
+        number=k + 1,
+        kind="gas" if wish > 0.0 else "brake",
+        alpha=alpha,
+        piece_m=piece,
+        recorded_mps=recorded,
+        stretched_m=np.array([stretched_position(d, d_n, alpha) for d in piece]),
+        joined_mps=np.array(
+            [joined_speed(v, d, ends, lift) for v, d in zip(recorded, piece, strict=True)]
+        ),
+        node_m=np.arange(float(shown.start), shown.stop),
+        driven_mps=np.array(trace.speed_mps)[shown],
+        followed_mps=np.array(followed)[shown],
+        mean_mps=mean_mps[shown],
+        learned_mps=learned.iteration.learned_mps[shown],
+    )
