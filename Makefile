@@ -1,9 +1,9 @@
-# make study   set up .venv, build the FMUs, drive the six drives of the study into out/
+# make study   set up .venv, build the FMUs, drive one driver into out/, 43 drivers into out/paper/
 # make test    all tests          make lint    formatting, lints, types
 # make bench   all speeds, JSON   make build   the FMUs into dist/      make clean
 #
-# Needs make and Python 3.11 or newer; PYTHON=... chooses one. STUDY=... passes options, e.g.
-# make study STUDY="--seed 7 --set wish.offset_mps=-2"
+# Needs make and Python 3.11 or newer; PYTHON=... chooses one. STUDY=... passes options for the one
+# driver, e.g. make study STUDY="--seed 7 --set wish.offset_mps=-2"
 
 ifeq ($(OS),Windows_NT)
 BIN := .venv/Scripts
@@ -26,6 +26,8 @@ help:
 
 study: $(BUILT)
 	$(BIN)/pldf study --out out $(STUDY)
+	$(BIN)/pldf study studies/paper.toml --out out/paper --restart
+	$(BIN)/pldf analyse out/paper
 
 test: $(READY)
 	$(BIN)/python -m pytest -n auto --dist loadfile $(TESTS)
