@@ -128,6 +128,15 @@ def test_the_fmus_give_the_same_bytes(fmu_folder: Path, tmp_path: Path) -> None:
     assert one == other
 
 
+def test_missing_fmus_leave_nothing_behind(
+    finished: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["study", str(finished / "small.toml"), "--out", str(tmp_path / "out")]
+    assert cli.main([*arguments, "--fmu", "--fmus", str(tmp_path)]) == 1
+    assert "no such FMU" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
 def interrupted_after(count: int) -> Callable[[Job, list[Participant]], Driven]:
     def run(job: Job, participants: list[Participant]) -> Driven:
         for one in participants[:count]:

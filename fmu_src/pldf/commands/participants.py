@@ -54,9 +54,9 @@ def run_file(options: argparse.Namespace) -> None:
     study = read_study(options.file)
     out: Path = options.out or study.out
     results = Results(study, out, through="FMUs" if options.fmu else "kernels")
-    results.open(options.restart)
     with ExitStack() as stack:
         fmus = stack.enter_context(unpacked(options.fmus)) if options.fmu else None
+        results.open(options.restart)
         run = on_cluster(options.scheduler) if options.scheduler else in_processes(options.jobs)
         bar = stack.enter_context(_progress(study, results))
         try:
