@@ -165,14 +165,14 @@ class DriverPorts(DriverParameters):
         "Legal limit here, 0 = unknown (then the lever is not used)",
         "m/s", start=0.0, low=0.0, high=150.0,
     )  # fmt: skip
-    driver_gas_pedal: float = real_output("Gas pedal travel", "", low=0.0, high=1.0)
-    driver_brake_pedal: float = real_output("Brake pedal travel", "", low=0.0, high=1.0)
-    lever_resume: int = flag_output("Lever: activate or resume")
-    lever_cancel: int = flag_output("Lever: cancel")
-    lever_up: int = flag_output("Lever: set speed up, short tip")
-    lever_down: int = flag_output("Lever: set speed down, short tip")
-    lever_up_long: int = flag_output("Lever: set speed up, long tip")
-    lever_down_long: int = flag_output("Lever: set speed down, long tip")
+    driver_gas_pedal: float = real_output("Gas pedal travel", "", low=0.0, high=1.0, held=True)
+    driver_brake_pedal: float = real_output("Brake pedal travel", "", low=0.0, high=1.0, held=True)
+    lever_resume: int = flag_output("Lever: activate or resume", held=True)
+    lever_cancel: int = flag_output("Lever: cancel", held=True)
+    lever_up: int = flag_output("Lever: set speed up, short tip", held=True)
+    lever_down: int = flag_output("Lever: set speed down, short tip", held=True)
+    lever_up_long: int = flag_output("Lever: set speed up, long tip", held=True)
+    lever_down_long: int = flag_output("Lever: set speed down, long tip", held=True)
 
 
 @dataclass(slots=True)

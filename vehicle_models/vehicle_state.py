@@ -95,8 +95,8 @@ class VehicleState(VehicleParameters):
     driver_gas_pedal: float = real_input("Gas pedal travel", "", start=0.0, low=0.0, high=1.0)
     driver_brake_pedal: float = real_input("Brake pedal travel", "", start=0.0, low=0.0, high=1.0)
     function_active: int = flag_input("The request shall be followed", start=False)
-    s_m: float = real_output("Position along the route", "m")
-    speed_mps: float = real_output("Ego speed", "m/s", low=0.0)
+    s_m: float = real_output("Position along the route", "m", held=True)
+    speed_mps: float = real_output("Ego speed", "m/s", low=0.0, held=True)
     acceleration_mps2: float = real_output("Ego acceleration", "m/s2")
     jerk_mps3: float = real_output("Change of the acceleration per second", "m/s3")
     # memory

@@ -159,13 +159,17 @@ def literal(signal: Signal, value: float | str) -> str:
 
 
 def _structure(root: Element, signals: tuple[Signal, ...]) -> None:
-    outputs = [i for i, s in enumerate(signals, start=1) if s.causality == "output"]
+    outputs = [(i, s) for i, s in enumerate(signals, start=1) if s.causality == "output"]
+    parameters = [str(i) for i, s in enumerate(signals, start=1) if s.causality == "parameter"]
     structure = SubElement(root, "ModelStructure")
-    # An empty list is not allowed by the schema, an absent one is.
-    for name in ("Outputs", "InitialUnknowns") if outputs else ():
+    # What an output that is held depends on; no list means everything.
+    known = {"Outputs": "", "InitialUnknowns": " ".join(parameters)}
+    # An empty list of unknowns is not allowed by the schema, an absent one is.
+    for name, dependencies in known.items() if outputs else ():
         unknowns = SubElement(structure, name)
-        for index in outputs:
-            SubElement(unknowns, "Unknown", {"index": str(index)})
+        for index, signal in outputs:
+            held = {"dependencies": dependencies} if signal.held else {}
+            SubElement(unknowns, "Unknown", {"index": str(index), **held})
 
 
 def _check(signals: tuple[Signal, ...]) -> None:

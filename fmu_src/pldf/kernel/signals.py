@@ -47,7 +47,11 @@ class Enumeration:
 
 @dataclass(frozen=True)
 class Signal:
-    """One variable of a model. ``field`` is the Python attribute, ``name`` the public name."""
+    """One variable of a model. ``field`` is the Python attribute, ``name`` the public name.
+
+    ``held``: an output that initialization and steps set, and that does not follow the inputs in
+    between. Masters that sort by such dependencies find no algebraic loop in the coupled models.
+    """
 
     field: str
     name: str
@@ -60,6 +64,7 @@ class Signal:
     high: float | None = None
     enumeration: Enumeration | None = None
     tunable: bool = False
+    held: bool = False
 
 
 def signals_of(record: type[Any] | Any) -> tuple[Signal, ...]:
@@ -104,10 +109,10 @@ def real_output(
     *,
     low: float | None = None,
     high: float | None = None,
-    name: str = "",
+    held: bool = False,
 ) -> Any:
     """Real output."""
-    return _spec("output", "Real", 0.0, description, unit=unit, low=low, high=high, name=name)
+    return _spec("output", "Real", 0.0, description, unit=unit, low=low, high=high, held=held)
 
 
 def flag_parameter(description: str, *, start: bool, name: str = "") -> Any:
@@ -120,9 +125,9 @@ def flag_input(description: str, *, start: bool, name: str = "") -> Any:
     return _spec("input", "Boolean", int(start), description, name=name)
 
 
-def flag_output(description: str, *, name: str = "") -> Any:
+def flag_output(description: str, *, held: bool = False) -> Any:
     """Boolean output, held as int 0 or 1."""
-    return _spec("output", "Boolean", 0, description, name=name)
+    return _spec("output", "Boolean", 0, description, held=held)
 
 
 def count_parameter(description: str, *, start: int, low: int, high: int, name: str = "") -> Any:
@@ -135,9 +140,9 @@ def count_input(description: str, *, start: int, low: int, high: int, name: str 
     return _spec("input", "Integer", start, description, low=low, high=high, name=name)
 
 
-def count_output(description: str, *, name: str = "") -> Any:
+def count_output(description: str, *, held: bool = False) -> Any:
     """Integer output."""
-    return _spec("output", "Integer", 0, description, name=name)
+    return _spec("output", "Integer", 0, description, held=held)
 
 
 def choice_parameter(description: str, choices: Enumeration, *, start: int, name: str = "") -> Any:
@@ -150,9 +155,9 @@ def choice_input(description: str, choices: Enumeration, *, start: int, name: st
     return _spec("input", "Enumeration", start, description, enumeration=choices, name=name)
 
 
-def choice_output(description: str, choices: Enumeration, *, name: str = "") -> Any:
+def choice_output(description: str, choices: Enumeration, *, held: bool = False) -> Any:
     """Enumeration output; the field holds the item's code."""
-    return _spec("output", "Enumeration", 0, description, enumeration=choices, name=name)
+    return _spec("output", "Enumeration", 0, description, enumeration=choices, held=held)
 
 
 def text_parameter(description: str, *, name: str = "") -> Any:

@@ -49,13 +49,13 @@ class Outputs(Inputs):
     """What the function tells vehicle, driver and researcher."""
 
     acceleration_request_mps2: float = real_output(
-        "Requested acceleration", "m/s2", low=-10.0, high=5.0
+        "Requested acceleration", "m/s2", low=-10.0, high=5.0, held=True
     )
     function_active: int = flag_output(
-        "The vehicle shall follow the request (ACTIVE, GAS_OVERRIDE)"
+        "The vehicle shall follow the request (ACTIVE, GAS_OVERRIDE)", held=True
     )
     # Numbers, not an enumeration: libcosim drops enumerations, and the driver needs the mode.
-    mode: int = count_output(f"Mode of the function: {MODE.legend}")
+    mode: int = count_output(f"Mode of the function: {MODE.legend}", held=True)
     target_speed_mps: float = real_output("Speed the function aims at here", "m/s")
     base_speed_mps: float = real_output("Base profile here", "m/s")
     set_speed_mps: float = real_output("Set speed in force", "m/s")
@@ -63,12 +63,16 @@ class Outputs(Inputs):
         "Offset that the driver set in this drive, 0 = none", "m/s"
     )
     limit_mps: float = real_output("Legal limit here", "m/s")
-    rate_pedal: float = real_output("Share of this drive with a pedal intervention", "")
-    rate_set_speed: float = real_output("Share of this drive with a set-speed offset", "")
-    rate_combined: float = real_output("Share of this drive with either", "")
-    drive_interventions: int = count_output("Pedal interventions in this drive")
-    profile_iteration: int = count_output("Number of drives learned so far")
-    profile_status: int = choice_output("What became of the stored profile", PROFILE_STATUS)
+    rate_pedal: float = real_output("Share of this drive with a pedal intervention", "", held=True)
+    rate_set_speed: float = real_output(
+        "Share of this drive with a set-speed offset", "", held=True
+    )
+    rate_combined: float = real_output("Share of this drive with either", "", held=True)
+    drive_interventions: int = count_output("Pedal interventions in this drive", held=True)
+    profile_iteration: int = count_output("Number of drives learned so far", held=True)
+    profile_status: int = choice_output(
+        "What became of the stored profile", PROFILE_STATUS, held=True
+    )
     hmi_reason: int = choice_output("Why the car drives at this speed", REASON)
     hmi_learned_delta_mps: float = real_output("Learned minus base speed here", "m/s")
     hmi_next_speed_mps: float = real_output("Next speed that the profile settles at", "m/s")
