@@ -123,7 +123,7 @@ class Distribution:
     driver_overshoot: Law = Uniform(0.0, 1.2)
     driver_reactivation_s: Law = Lognormal(2.0, 0.4, low=0.3, high=20.0)  # sigma: decision
     driver_uses_lever: Law = Share(0.95)
-    driver_lever_settled_s: Law = Lognormal(3.0, 0.3, low=0.5, high=20.0)  # decision
+    driver_lever_settled_s: Law = Lognormal(3.0, 0.3, low=0.3, high=20.0)  # decision
 
     def with_laws(self, laws: Mapping[str, Law]) -> Distribution:
         """Return the same distribution with other laws for some fields."""
