@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -159,14 +160,18 @@ def test_values_fit_the_variables_of_the_fmus(
                     assert low <= float(value.get("value")) <= high
 
 
-def test_a_phase_is_these_parameters() -> None:
-    made = {
-        name: [start_values(phase, 0)["pldf"][key] for key in ("apply_learned", "learn_faithful")]
-        for name, phase in PHASES.items()
-    }
-    assert made == {
-        "A1": [0, 0], "A2": [0, 1], "A3": [0, 0], "B1": [1, 1], "B2": [1, 1], "B3": [1, 0],
-    }  # fmt: skip
+def test_the_documentation_says_what_makes_a_phase() -> None:
+    text = (IN_REPOSITORY.parent / "docs" / "ssp.md").read_text(encoding="utf-8")
+    row = re.compile(r"\| ([AB]\d) \| (\w+) \| (\w+) \| (\d).* \| (\d) \|")
+    documented = {name: values for name, *values in row.findall(text)}
+    made = {}
+    for drive, phase in enumerate(PHASES.values()):
+        values = start_values(phase, drive)
+        flags = [bool(values["pldf"][name]) for name in ("apply_learned", "learn_faithful")]
+        numbers = [values["driver"][name] for name in ("kind", "seed")]
+        made[phase.name] = [*(str(flag).lower() for flag in flags), *map(str, numbers)]
+    assert documented == made
+    assert [phase.learn for phase in PHASES.values()] == [row[1] == "true" for row in made.values()]
 
 
 def test_schemas_and_checks_of_pyssp(package: Path) -> None:
