@@ -103,6 +103,7 @@ _TITLES: Final = {
     "drives": "The drives of {driver}",
     "development": "What the function learned from {driver}",
     "steps": "One intervention, step by step",
+    "long": "Drive after drive",
     "base": "The road and its base profile",
 }
 _CAPTIONS: Final = {
@@ -128,6 +129,11 @@ _CAPTIONS: Final = {
         "so that it joins the recorded speed (eq. 2). 4: mean with the profile of that drive "
         "(eq. 3), within the bounds. 5: smoothed and faded into the unchanged profile, which the "
         "next drive follows. The buttons add one step after the other."
+    ),
+    "long": (
+        "Simulated drivers who intervene and are learned from in every drive, for several stretch "
+        "factors. The error is what remains between the profile and the drivers' hidden wish, "
+        "which no study with people can measure."
     ),
     "base": (
         "Legal limits, the speed that the curves allow, and the base profile planned from both "

@@ -16,6 +16,7 @@ from plotly.subplots import make_subplots  # type: ignore[import-untyped]
 from .analysis import RATES, Analysis
 from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION
 from .interventions import pedal_interventions, set_speed_interventions
+from .long_run import PANELS, Columns
 from .published import published_means
 from .recording import Recording
 from .report_material import DriverShown, Material
@@ -242,6 +243,33 @@ def steps_figure(steps: Steps) -> Any:
     return styled(figure, 520)
 
 
+def long_run_figure(runs: Mapping[float, Columns]) -> Any:
+    """Return what becomes of rates, of content drivers and of the remaining error over drives."""
+    figure = make_subplots(2, 2, shared_xaxes=True, vertical_spacing=0.08, horizontal_spacing=0.12)
+    styles = ((VERMILLION, "solid"), (ORANGE, "dash"), (BLUE, "solid"), (GREEN, "dot"))
+    marks = ("circle", "square", "triangle-up", "diamond")
+    for at, (column, title) in enumerate(PANELS.items()):
+        place = {"row": at // 2 + 1, "col": at % 2 + 1}
+        for number, (factor, columns) in enumerate(runs.items()):
+            colour, dash = styles[number % len(styles)]
+            figure.add_trace(
+                {
+                    "type": "scatter", "x": columns["drive"], "y": columns[column],
+                    "mode": "lines+markers", "line": {"color": colour, "dash": dash, "width": 2},
+                    "marker": {"symbol": marks[number % len(marks)], "size": 6},
+                    "name": f"Stretch factor {factor:g}", "legendgroup": f"{factor:g}",
+                    "showlegend": at == 0,
+                    "hovertemplate": f"{factor:g}: %{{y:.1f}}<extra></extra>",
+                },
+                **place,
+            )  # fmt: skip
+        figure.update_yaxes(title_text=title, rangemode="tozero", **place)
+    styled(figure, 570, distance=False)
+    figure.update_xaxes(title_text="Drive", row=2)
+    figure.update_layout(hovermode="x unified")
+    return figure
+
+
 def figures_of(material: Material) -> dict[str, Any]:
     """Return the figures that the material allows, by name."""
     figures = {"rates": rates_figure(material.analysis)}
@@ -251,6 +279,8 @@ def figures_of(material: Material) -> dict[str, Any]:
             figures["development"] = development_figure(material.driver, material.route)
         if material.driver.steps:
             figures["steps"] = steps_figure(material.driver.steps)
+    if material.long_run:
+        figures["long"] = long_run_figure(material.long_run)
     figures["base"] = route_figure(material.route)
     return figures
 

@@ -19,6 +19,7 @@ from ..kernel.signals import signals_of
 from ..roads import Route, fingerprint, route_arrays
 from ..stored_profile import Iteration, StoredProfile
 from .analysis import Analysis, Source
+from .long_run import Columns, read_long_run
 from .phases import choose_route
 from .recording import Recording
 from .route_facts import RouteFacts, route_facts
@@ -29,6 +30,7 @@ DEVELOPMENT: Final = (("A2", "B1"), ("B1", "B2"), ("B2", "B3"))
 TAUGHT_FIRST: Final = "A2"
 STUDY: Final = "study.toml"
 VERSIONS: Final = "versions.json"
+LONG_RUN: Final = "long_run.csv"
 _SAME_LIMIT_MPS: Final = 0.1
 _SAME_LIMIT_SHARE: Final = 0.95
 
@@ -62,6 +64,7 @@ class Material:
         title: of the study.
         route: the road and its base profile.
         driver: one participant in detail; None without recordings.
+        long_run: columns of ``long_run.csv`` by stretch factor; empty if there is none.
         texts: files to print in full for reproduction, by name.
         parameters: part (pldf, vehicle) -> FMI name -> value; as far as the run wrote them.
         participants: parameter of the simulated drivers -> smallest, median and largest value.
@@ -71,6 +74,7 @@ class Material:
     title: str
     route: RouteFacts
     driver: DriverShown | None
+    long_run: Mapping[float, Columns]
     texts: Mapping[str, str]
     parameters: Mapping[str, Mapping[str, float]]
     participants: Mapping[str, tuple[float, float, float]]
@@ -107,6 +111,7 @@ def collect(analysis: Analysis, source: Source, driver: str | None = None) -> Ma
         title=str(source.study.get("title", f"Study {folder.resolve().name}")),
         route=_facts(route, function),
         driver=None if shown is None else _driver(shown, source, route, function),
+        long_run=read_long_run(folder / LONG_RUN) if (folder / LONG_RUN).exists() else {},
         texts=texts,
         parameters=parameters,
         participants=_parameter_ranges(folder / "participants.csv"),

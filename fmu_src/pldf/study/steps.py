@@ -75,14 +75,19 @@ def explain_steps(recording: Recording, route: Route, function: DrivingFunction)
 
 
 def _most_telling(learned: Learned) -> int | None:
-    """Return the intervention with the largest share of stretching among those well visible."""
+    """Return the most stretched intervention among those that changed the profile well visibly.
+
+    One that was not over when the recording ended has no end to explain.
+    """
     function, new = learned.function, learned.iteration
+    st, trace = function.record, function.trace
     change = np.abs(new.learned_mps - np.asarray(function.profile.learned_mps))
     found = []
-    for k in range(function.record.drive_interventions):
+    for k in range(st.drive_interventions):
         mine = (new.intervention == k + 1) & (new.drive == new.number)
-        if mine.any() and function.trace.end_m[k] > function.trace.start_m[k]:
-            alpha = stretch_factor(function.record, function.route, function.trace, k)
+        whole = trace.start_m[k] < trace.end_m[k] <= st.first_node + st.nodes - 1
+        if mine.any() and whole:
+            alpha = stretch_factor(st, function.route, trace, k)
             seen = min(float(change[mine].max()), _INTERESTING_MPS)
             found.append((seen, alpha, -k))
     return -max(found)[2] if found else None
@@ -100,9 +105,7 @@ def _steps(learned: Learned, k: int, mean_mps: Floats) -> Steps:
     followed = np.asarray(function.profile.learned_mps)
     first = max(int(start - AROUND_M), 0)
     shown = slice(first, min(int(d_n + AROUND_M), len(followed) - 1) + 1)
-    wish = float(np.mean(recorded)) - float(
-        np.mean(np.interp(piece, np.arange(len(followed)), followed))
-    )
+    wish = np.mean(recorded) - np.mean(np.interp(piece, np.arange(len(followed)), followed))
     return Steps(
         number=k + 1,
         kind="gas" if wish > 0.0 else "brake",
