@@ -1,5 +1,7 @@
 """Build the FMUs, and the study's SSP packages of them: ``python build_fmu.py [--out dist]``.
 
+``--native`` builds the FMUs without Python (extra ``[native]``) instead, into ``dist/native``.
+
 Needs the project installed (``pip install -e .``). Ends with status 1, and a message that says why,
 unless every FMU and package passes the validation of fmpy. The same sources give the same bytes.
 """
@@ -7,6 +9,7 @@ unless every FMU and package passes the validation of fmpy. The same sources giv
 from __future__ import annotations
 
 import argparse
+import ast
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -49,6 +52,14 @@ FMUS: Final = {
 }
 
 
+# Where the native build finds its models.
+NATIVE: Final = {
+    "AdaptivePLDF": "pldf.native.driving_function:MODEL",
+    "LongitudinalVehicle": "vehicle_models.native:VEHICLE",
+    "ScriptedDriver": "vehicle_models.native:DRIVER",
+}
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Build and validate; return the exit status."""
     options = _parser().parse_args(arguments)
@@ -57,24 +68,52 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"[{number}/{len(names)}] {name} ... ", end="", flush=True)
         start = perf_counter()
         try:
-            path = build_valid(FMUS[name], options.out)
+            path = build_valid(name, options)
         except ValueError as problem:
             print("failed", flush=True)
             print(f"build_fmu.py: {name}: {problem}", file=sys.stderr)
             return 1
         size_kb = path.stat().st_size / 1024
         print(f"{path} ({size_kb:.0f} KiB, {perf_counter() - start:.1f} s, valid)")
-    return 0 if options.only else build_packages(options)
+    return 0 if options.only or options.native else build_packages(options)
 
 
-def build_valid(what: Recipe, out: Path) -> Path:
+def build_valid(name: str, options: argparse.Namespace) -> Path:
     """Build one FMU; ValueError, and no file left, if fmpy finds a problem in it."""
-    path = build(what, out)
+    if options.native:
+        path = build_without_python(name, options.target, options.out / "native")
+    else:
+        path = build(FMUS[name], options.out)
     problems = validate_fmu(str(path))
     if problems:
         path.unlink()
         raise ValueError("not a valid FMU:\n  " + "\n  ".join(problems))
     return path
+
+
+def build_without_python(name: str, targets: Sequence[str] | None, out: Path) -> Path:
+    """Build one native FMU; ValueError if the extra is not installed or the build fails."""
+    try:
+        from pldf.native import build as native  # noqa: PLC0415 - needs the extra [native]
+        from pldf.native.prepared import packed_files  # noqa: PLC0415
+
+        from vehicle_models.native import packed_scripts  # noqa: PLC0415
+    except ImportError as missing:
+        raise ValueError(f"{missing}; run: pip install -e .[native]") from None
+    resources = packed_files()
+    if name == "ScriptedDriver":
+        resources |= packed_scripts()
+    guide = documented_class(FMUS[name].script)
+    made_of = native.NativeRecipe(
+        NATIVE[name], ROOT / "native", resources, guide, FMUS[name].icon, FMUS[name].license
+    )
+    return native.build_native(made_of, targets or native.DEFAULT_TARGETS, out)
+
+
+def documented_class(script: Path) -> str:
+    """Return the docstring of the class that ``script`` defines, without running it."""
+    body = ast.parse(script.read_text(encoding="utf-8")).body
+    return next(ast.get_docstring(node) or "" for node in body if isinstance(node, ast.ClassDef))
 
 
 def build_packages(options: argparse.Namespace) -> int:
@@ -99,6 +138,15 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--only", choices=sorted(FMUS), help="build this FMU alone, no packages")
     parser.add_argument(
         "--out", type=Path, default=Path("dist"), metavar="FOLDER", help="default: dist"
+    )
+    parser.add_argument(
+        "--native", action="store_true", help="FMUs without Python instead, into OUT/native"
+    )
+    parser.add_argument(
+        "--target",
+        action="append",
+        choices=("linux64", "win64", "darwin64"),
+        help="with --native: build for this platform alone (repeatable; default: all)",
     )
     parser.add_argument(
         "--ssp-sources",

@@ -8,10 +8,12 @@ from pldf.kernel import planner
 from pldf.kernel.arrays import RouteArrays, Work
 from pldf.native.model import NativeModel, Watch
 from pldf.native.pointers import columns, record_at
+from pldf.native.prepared import SUFFIX, prepared_script
 
 from . import driver_kernel, pedal_kernel, script_kernel, vehicle_kernel, wish_kernel
 from .driver import INVALID_INPUT as DRIVER_INPUT
 from .driver_kernel import driver_start, driver_step
+from .driver_script import PACKED, packed_script, read_script, script_arrays
 from .driver_state import PREFERENCE, SCRIPT, DriverState, DriverTexts
 from .script_kernel import ScriptArrays
 from .vehicle import INVALID_INPUT as VEHICLE_INPUT
@@ -84,3 +86,9 @@ DRIVER: Final = NativeModel(
     events_if=("kind", SCRIPT),
     watch=Watch("invalid_input", ("", DRIVER_INPUT), once=True, flag="warned"),
 )
+
+
+def packed_scripts() -> dict[str, bytes]:
+    """Return the prepared files of all packed scripts by their path in ``resources/``."""
+    scripts = [script_arrays(read_script(packed_script(i))) for i in range(len(PACKED))]
+    return {f"script/{i}{SUFFIX}": prepared_script(arrays) for i, arrays in enumerate(scripts)}

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
+from ..native.prepared import SUFFIX, write_prepared_route
 from ..roads import fingerprint, open_route, write_route_csv
 from ..study.route_facts import BINDING_MPS, RouteFacts, route_facts
 
@@ -28,7 +29,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--plot", metavar="PNG", type=_picture, help="draw limits, curvature and base profile"
     )
-    parser.add_argument("--export", metavar="OUT.csv", type=Path, help="write the route as CSV")
+    parser.add_argument(
+        "--export",
+        metavar="OUT.csv",
+        type=Path,
+        help="write the route as CSV; as OUT.prepared: for route_file of a native FMU",
+    )
     parser.add_argument(
         "--start-road", metavar="ID", help="OpenDRIVE road that the route starts with"
     )
@@ -48,7 +54,8 @@ def run(options: argparse.Namespace) -> None:
     facts = route_facts(route)
     print("\n".join(_summary(facts)))
     if options.export is not None:
-        write_route_csv(route, options.export)
+        as_csv = options.export.suffix != SUFFIX
+        (write_route_csv if as_csv else write_prepared_route)(route, options.export)
         print(f"written      {options.export}")
     if options.plot is not None:
         from ..study.figures_route import draw_route  # noqa: PLC0415 (0.5 s that few calls need)

@@ -23,15 +23,20 @@ def read_members(path: Path) -> dict[str, bytes]:
 
 def with_guid(members: Mapping[str, bytes]) -> dict[str, bytes]:
     """Return the members with the GUID in the model description made from all their bytes."""
-    total = hashlib.sha256()
-    for name in sorted(members):
-        total.update(f"{len(name)} {name} {len(members[name])}\n".encode())
-        total.update(members[name])
-    guid = "{" + str(uuid.UUID(bytes=total.digest()[:16], version=5)) + "}"
+    guid = guid_of(members)
     if members[DESCRIPTION].count(NO_GUID.encode()) != 1:
         raise ValueError("the model description must hold the placeholder of the GUID once")
     text = members[DESCRIPTION].replace(NO_GUID.encode(), guid.encode())
     return {**members, DESCRIPTION: text}
+
+
+def guid_of(members: Mapping[str, bytes]) -> str:
+    """Return a GUID made from names and bytes."""
+    total = hashlib.sha256()
+    for name in sorted(members):
+        total.update(f"{len(name)} {name} {len(members[name])}\n".encode())
+        total.update(members[name])
+    return "{" + str(uuid.UUID(bytes=total.digest()[:16], version=5)) + "}"
 
 
 def write_archive(path: Path, members: Mapping[str, bytes]) -> None:

@@ -1,0 +1,28 @@
+/* The operating system: files, folders, the lock. Paths are UTF-8. What fails leaves its reason in
+   `why` (REASON_SIZE bytes). */
+#ifndef PLDF_DISK_H
+#define PLDF_DISK_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { PATH_SIZE = 4096, REASON_SIZE = 160 };
+typedef enum { READ_DONE, READ_ABSENT, READ_FAILED } ReadResult;
+typedef struct {
+    intptr_t handle;
+    char path[PATH_SIZE + 32];
+} Lock;
+
+/* Whole regular file of at most `most` bytes, to be freed by the caller. */
+ReadResult disk_read(const char *path, int64_t most, uint8_t **bytes, int64_t *size, char *why);
+bool disk_replace(const char *path, const uint8_t *bytes, int64_t size, char *why);
+bool disk_rename(const char *from, const char *to, char *why);
+bool disk_exists(const char *path);
+bool disk_is_folder(const char *path);
+bool disk_make_folder(const char *path, char *why); /* with those above it */
+bool disk_lock(const char *folder, Lock *lock, char *why);
+void disk_unlock(Lock *lock);
+bool disk_absolute(const char *path, char *absolute);
+bool disk_environment(const char *name, char *value);
+
+#endif

@@ -1,0 +1,52 @@
+/* One model as data: variables, defaults, arrays and the entry points compiled from its kernel.
+   The table (table.h, table.c) is generated from the model's table of signals. */
+#ifndef PLDF_MODEL_H
+#define PLDF_MODEL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef union {
+    int64_t integer;
+    double real;
+} Cell;
+
+/* record, block of columns, number of nodes and of script lines, step in s */
+typedef void Entry(Cell *, double *, int64_t, int64_t, double);
+
+enum { KIND_REAL = 1, KIND_INTEGER = 2, KIND_BOOLEAN = 4, KIND_STRING = 8 };
+enum { PARAMETER, FIXED_PARAMETER, INPUT, OUTPUT };
+
+typedef struct { /* its index is the value reference */
+    const char *name;
+    int32_t kind, causality;
+    int32_t cell; /* index in the record, of a String in the texts */
+    double low, high;
+} Variable;
+
+typedef struct {
+    const char *guid, *name;
+    const Variable *variables;
+    int32_t variable_count;
+    const Cell *defaults;
+    Entry *start, *adopt, *refresh, *step, *learn; /* NULL: the model has none */
+    /* columns of the block: per node (the first ones belong to the state), then per script line */
+    int32_t node_columns, kept_columns, script_columns, route_column;
+    int32_t route_if, script_if; /* cell that asks for it, -1: always; -2: never */
+    int64_t route_if_value, script_if_value;
+    int32_t route_id, script_id;     /* cells */
+    int32_t route_text, script_text; /* index of the String parameters, -1: none */
+    /* what the user is told about: cell, its texts, cell of the flag or -1, cell of the time */
+    int32_t watch, watch_flag, watch_time;
+    const char *const *watch_texts;
+    /* the profile, for models with learn: cells and columns */
+    int32_t store_text, driver_id, apply_learned, learn_if[2], localization, nodes, intervening;
+    int32_t interventions, profile_iteration, profile_status;
+    int32_t base_column, learned_column, following_column;
+} Model;
+
+extern const Model model;
+
+#include "table.h" /* MODEL_CELLS, MODEL_TEXTS */
+
+#endif

@@ -1,0 +1,136 @@
+#include "store.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const int64_t FILE_MAX = (int64_t)1 << 32;
+
+static void path_of(const char *folder, const Profile *wanted, char *path) {
+    snprintf(path, PATH_SIZE, "%s/driver-%06lld_route-%s.pldf", folder, (long long)wanted->driver,
+             wanted->route);
+}
+
+void profile_free(Profile *profile) {
+    free(profile->bytes);
+    profile->bytes = NULL;
+}
+
+/* Reads the file into `found`; REFUSED with the reason if it is not the profile that is wanted. */
+static StoreResult read_profile(const char *path, const Profile *wanted, Profile *found, char *why) {
+    memset(found, 0, sizeof *found);
+    switch (disk_read(path, FILE_MAX, &found->bytes, &found->size, why)) {
+    case READ_ABSENT: return STORE_ABSENT;
+    case READ_FAILED: found->bytes = NULL; return STORE_REFUSED;
+    case READ_DONE: break;
+    }
+    bool good = profile_parse(found, why);
+    if (good && (found->driver != wanted->driver || found->nodes != wanted->nodes ||
+                 strcmp(found->route, wanted->route) != 0)) {
+        snprintf(why, REASON_SIZE, "it is the profile of another driver or route");
+        good = false;
+    }
+    if (!good) profile_free(found);
+    return good ? STORE_LOADED : STORE_REFUSED;
+}
+
+/* First name that is not taken; `pattern` holds one %d. */
+static void free_name(const char *path, const char *tail, char *name) {
+    for (int number = 1;; number++) {
+        snprintf(name, PATH_SIZE, "%s%s%d%s", path, tail, number,
+                 strstr(tail, "conflict") ? ".pldf" : "");
+        if (!disk_exists(name)) return;
+    }
+}
+
+static bool keep_aside(const char *path, char *kept, char *why) {
+    free_name(path, ".refused-", kept);
+    return disk_rename(path, kept, why);
+}
+
+/* A file in the place of the folder means that nothing can ever be saved. */
+static bool can_be_folder(const char *folder, char *message) {
+    char part[PATH_SIZE];
+    snprintf(part, sizeof part, "%s", folder);
+    while (!disk_exists(part)) {
+        char *slash = strrchr(part, '/'), *back = strrchr(part, '\\');
+        char *end = back > slash ? back : slash;
+        if (!end || end == part) return true;
+        *end = 0;
+    }
+    if (disk_is_folder(part)) return true;
+    snprintf(message, MESSAGE_SIZE, "%s: not a folder; choose another profile store", part);
+    return false;
+}
+
+StoreResult store_load(const char *folder, Profile *profile, char *message) {
+    char path[PATH_SIZE], kept[PATH_SIZE], why[REASON_SIZE] = "", again[REASON_SIZE] = "";
+    Profile found;
+    Lock lock;
+    if (!can_be_folder(folder, message)) return STORE_REFUSED;
+    path_of(folder, profile, path);
+    StoreResult result = read_profile(path, profile, &found, why);
+    if (result == STORE_REFUSED) { /* again under the lock: somebody may have dealt with it */
+        snprintf(kept, sizeof kept, "left in its place");
+        if (disk_lock(folder, &lock, again)) {
+            result = read_profile(path, profile, &found, why);
+            if (result == STORE_REFUSED && !keep_aside(path, kept, again))
+                snprintf(kept, sizeof kept, "left in its place");
+            disk_unlock(&lock);
+        }
+    }
+    if (result == STORE_LOADED) *profile = found;
+    if (result == STORE_REFUSED)
+        snprintf(message, MESSAGE_SIZE,
+                 "%s: %s; kept: %s; the drive goes on with the base profile", path, why, kept);
+    return result;
+}
+
+/* Under the lock: puts the bytes where they belong. */
+static Level put(const char *path, const Profile *ours, const uint8_t *bytes, int64_t size,
+                 char *message) {
+    char kept[PATH_SIZE], stem[PATH_SIZE], why[REASON_SIZE] = "";
+    Profile present;
+    Level level = INFO;
+    StoreResult found = read_profile(path, ours, &present, why);
+    if (found == STORE_LOADED && !profile_same_history(&present, ours)) {
+        snprintf(stem, sizeof stem, "%.*s", (int)(strlen(path) - strlen(".pldf")), path);
+        free_name(stem, ".conflict-", kept);
+        snprintf(message, MESSAGE_SIZE,
+                 "%s: changed by another process during this drive and left as it is; what this "
+                 "drive learned is kept in %s", path, kept);
+        path = kept;
+        level = WARNING;
+    } else if (found == STORE_REFUSED && keep_aside(path, kept, why)) {
+        snprintf(message, MESSAGE_SIZE, "%s: not a sound profile; kept as %s, a new one took its "
+                 "place", path, kept);
+        level = WARNING;
+    }
+    profile_free(&present);
+    if (disk_replace(path, bytes, size, why)) return level;
+    snprintf(message, MESSAGE_SIZE, "profile not saved: %s: %s, what was there is unchanged; make "
+             "room there, or choose another folder", path, why);
+    return ERROR_LEVEL;
+}
+
+Level store_save(const char *folder, const Profile *profile, const Lesson *lesson, char *message) {
+    char path[PATH_SIZE], why[REASON_SIZE] = "";
+    Lock lock;
+    Profile check = {0};
+    Level level = ERROR_LEVEL;
+    path_of(folder, profile, path);
+    check.bytes = profile_extend(profile, lesson, &check.size);
+    if (!check.bytes) {
+        snprintf(message, MESSAGE_SIZE, "profile not saved: not enough memory");
+    } else if (!profile_parse(&check, why) || !disk_make_folder(folder, why) ||
+               !disk_lock(folder, &lock, why)) { /* nothing is written that cannot be read back */
+        snprintf(message, MESSAGE_SIZE, "profile not saved: %s: %s", path, why);
+    } else {
+        snprintf(message, MESSAGE_SIZE, "drive %lld learned from %lld pedal interventions, saved in %s",
+                 (long long)check.count, (long long)lesson->interventions, path);
+        level = put(path, profile, check.bytes, check.size, message);
+        disk_unlock(&lock);
+    }
+    profile_free(&check);
+    return level;
+}
