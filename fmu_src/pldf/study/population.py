@@ -9,7 +9,7 @@ moves every person's value of it and nothing else (common random numbers: a smoo
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from math import exp
 from statistics import NormalDist
@@ -161,11 +161,16 @@ def draw_participant(index: int, seed: int, distribution: Distribution) -> Parti
     """Return the person with this index, from 0, whatever the size of the study."""
     rng = np.random.default_rng([seed, index])
     own_seed = int(rng.integers(1, SEED_MAX, endpoint=True))
-    values: dict[str, float] = {}
-    for name in FIELDS:
-        # The open interval: a normal law has no value at 0.
-        values[name] = getattr(distribution, name).at(max(float(rng.random()), 1e-12))
-    return Participant(f"P{index + 1:03d}", own_seed, values)
+    # The open interval: a normal law has no value at 0.
+    quantiles = [max(float(rng.random()), 1e-12) for _ in FIELDS]
+    return Participant(f"P{index + 1:03d}", own_seed, values_at(quantiles, distribution))
+
+
+def values_at(quantiles: Sequence[float], distribution: Distribution) -> dict[str, float]:
+    """Return the parameters of the person at ``quantiles`` (above 0, below 1; as ``FIELDS``)."""
+    return {
+        name: getattr(distribution, name).at(u) for name, u in zip(FIELDS, quantiles, strict=True)
+    }
 
 
 def _public_name(field: str) -> str:
