@@ -14,6 +14,7 @@ import pytest
 from pldf.cli import main
 from pldf.instance import ModelError
 from pldf.study.analysis import Source, analyse
+from pldf.study.figures_paper import write_figures
 from pldf.study.report import report_of
 from pldf.study.report_material import Material, collect
 from selenium import webdriver
@@ -213,6 +214,26 @@ def test_a_driver_without_recordings_and_a_study_without_any(
     text = report.read_text(encoding="utf-8")
     assert "3 recorded participants" in text
     assert "no recordings" in text
+
+
+def test_figures_for_papers_are_the_same_bytes_every_time(
+    material: Material, tmp_path: Path
+) -> None:
+    one, two = (write_figures(material, tmp_path / name, "svg") for name in ("one", "two"))
+    assert {path.stem for path in one} == {
+        "base", "development", "drives", "long_run", "rates", "steps",
+    }  # fmt: skip
+    for first, second in zip(one, two, strict=True):
+        assert first.read_bytes() == second.read_bytes()
+
+
+def test_the_command_writes_figures_as_pdf(folder: Path, tmp_path: Path) -> None:
+    shutil.copy(folder / "drives.csv", tmp_path)
+    figures = tmp_path / "figures"
+    command = ["analyse", str(tmp_path), "--figures", str(figures), "--format", "pdf"]
+    assert main(command) == 0
+    assert {path.name for path in figures.iterdir()} == {"base.pdf", "rates.pdf"}
+    assert (figures / "rates.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_a_report_on_the_wrong_road_is_refused(folder: Path, tmp_path: Path) -> None:

@@ -20,9 +20,10 @@ from ..study.questionnaire import SCALES
 SUMMARY: Final = "Analyse a study, real or simulated: rates, scores, tests, effect sizes, report."
 EXAMPLE: Final = (
     "pldf analyse out --report report.html\n"
-    "  pldf analyse laboratory --route road.xodr --without P07 --report laboratory.html"
+    "  pldf analyse laboratory --route road.xodr --without P07 --figures paper --format pdf"
 )
 
+FORMATS: Final = ("svg", "pdf", "png")
 _NAMES: Final = {
     "pedal": "Pedal, %",
     "set_speed": "Set speed, %",
@@ -54,8 +55,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--report", type=Path, metavar="HTML", help="write a report, one file that needs no network"
     )
     parser.add_argument(
+        "--figures", type=Path, metavar="FOLDER", help="write the figures for papers into a folder"
+    )
+    parser.add_argument(
+        "--format", choices=FORMATS, default="svg", help="of these figures (default: svg)"
+    )
+    parser.add_argument(
         "--driver", metavar="PARTICIPANT",
-        help="whom the report shows in detail (default: nearest to the median effect)",
+        help="whom report and figures show in detail (default: nearest to the median effect)",
     )  # fmt: skip
 
 
@@ -72,17 +79,26 @@ def run(options: argparse.Namespace) -> None:
     console.print(_tests(analysis))
     for line in _remarks(analysis):
         console.print(line, highlight=False)
-    if options.report:
-        _write_report(analysis, source, options)
+    if options.report or options.figures:
+        _show(analysis, source, options)
     print(f"Tables: {', '.join(path.name for path in written)} in {written[0].parent}.")
 
 
-def _write_report(analysis: Analysis, source: Source, options: argparse.Namespace) -> None:
-    from ..study.report import write_report  # noqa: PLC0415 - slow to import
-    from ..study.report_material import collect  # noqa: PLC0415
+def _show(analysis: Analysis, source: Source, options: argparse.Namespace) -> None:
+    """Write report and figures, as far as they are wanted."""
+    from ..study.report_material import collect  # noqa: PLC0415 - slow to import
 
-    write_report(options.report, collect(analysis, source, options.driver))
-    print(f"Report: {options.report}")
+    material = collect(analysis, source, options.driver)
+    if options.report:
+        from ..study.report import write_report  # noqa: PLC0415
+
+        write_report(options.report, material)
+        print(f"Report: {options.report}")
+    if options.figures:
+        from ..study.figures_paper import write_figures  # noqa: PLC0415
+
+        paths = write_figures(material, options.figures, options.format)
+        print(f"Figures: {', '.join(path.name for path in paths)} in {options.figures}.")
 
 
 def _means(analysis: Analysis) -> Table:

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from .route_facts import BINDING_MPS, RouteFacts
@@ -20,10 +19,14 @@ _LABELLED_CURVES_MAX: Final = 14
 
 def draw_route(facts: RouteFacts, path: Path) -> None:
     """Draw ``facts`` into ``path`` (PNG, PDF or SVG by its ending)."""
+    route_figure(facts).savefig(path, dpi=150)
+
+
+def route_figure(facts: RouteFacts) -> Figure:
+    """Return limits, curves, base profile, curvature and grade over distance."""
     hilly = bool(np.any(facts.route.grade))
     heights = [3.2, 1.2, 1.0] if hilly else [3.2, 1.2]
     figure = Figure(figsize=(11.0, 6.6 if hilly else 5.6), layout="constrained")
-    FigureCanvasAgg(figure)
     axes = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
     _draw_speeds(axes[0], facts)
     _draw_curvature(axes[1], facts)
@@ -36,7 +39,7 @@ def draw_route(facts: RouteFacts, path: Path) -> None:
         axis.set_axisbelow(True)
         axis.spines[["top", "right"]].set_visible(False)
     figure.align_ylabels(axes)
-    figure.savefig(path, dpi=150)
+    return figure
 
 
 def minutes(time_s: float) -> str:
