@@ -75,10 +75,13 @@ def _digest(model: str) -> str:
     total = hashlib.sha256(model.encode())
     for name in ("numba", "llvmlite", "numpy"):
         total.update(f"{name} {metadata.version(name)}\n".encode())
-    packages = [importlib.import_module(name) for name in ("pldf", model.partition(".")[0])]
-    for package in packages:
-        for path in sorted(Path(str(package.__file__)).parent.rglob("*.py")):
-            total.update(path.read_bytes())
+    package = Path(__file__).parents[1]
+    paths = [*package.glob("kernel/*.py"), *package.glob("native/*.py"), package / "compiled.py"]
+    other = importlib.import_module(model.partition(".")[0])
+    if other.__name__ != package.name:
+        paths += Path(str(other.__file__)).parent.glob("*.py")
+    for path in sorted(paths):
+        total.update(path.read_bytes())
     return total.hexdigest()[:16]
 
 
