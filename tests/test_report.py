@@ -34,11 +34,21 @@ LONG_RUN = """stretch_factor,drive,pedal_percent,combined_percent,content_percen
 0.5,1,22,50,0,9
 0.5,2,10,20,20,5
 """
+# Satisfying items alone: A is annoying, B nice.
+QUESTIONNAIRE = """participant,system,laan_2,laan_4,laan_6,laan_8
+P001,A,4,4,2,2
+P001,B,2,2,4,5
+P002,A,3,4,2,3
+P002,B,2,1,5,4
+P003,A,5,4,1,2
+P003,B,3,2,4,4
+"""
 REQUEST = "Network.requestWillBeSent"
 FIGURES = ("rates", "drives", "development", "steps", "long", "base")
 BROWSER_FLAGS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-component-update",
-    "--disable-background-networking", "--disable-sync", "--window-size=1200,1000",
+    "--disable-background-networking", "--disable-sync", "--disable-dev-shm-usage",
+    "--window-size=1200,1000",
 )  # fmt: skip
 
 
@@ -49,6 +59,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (out / "three.toml").write_text(STUDY)
     assert main(["study", str(out / "three.toml"), "--out", str(out / "out"), "--jobs", "1"]) == 0
     (out / "out" / "long_run.csv").write_text(LONG_RUN)
+    (out / "out" / "questionnaire.csv").write_text(QUESTIONNAIRE)
     return out / "out"
 
 
@@ -178,12 +189,13 @@ def test_numbers_texts_and_parameters(html: str, material: Material) -> None:
         "<title>Three &lt;people&gt;</title>",
         "3 simulated drivers, 18 drives",
         f"{100 * combined.mean_first:.1f} %",
-        "9.78 · 10<sup>&minus;8</sup>",
+        "p = 9.78 · 10<sup>&minus;8</sup>",
         "t(42) = 6.42",
         "learning.stretch_factor",
         "body.mass_kg",
         "wish.offset_mps",
         "count = 3",
+        "<th>Satisfying (&minus;2 … +2)</th><td>&minus;1.00</td><td>1.17</td>",
     ):
         assert text in html, text
 

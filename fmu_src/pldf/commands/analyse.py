@@ -103,7 +103,7 @@ def _show(analysis: Analysis, source: Source, options: argparse.Namespace) -> No
 
 def _means(analysis: Analysis) -> Table:
     title = f"System A against B, means of {len(analysis.participants)} participants"
-    table = Table(title=title, box=SIMPLE_HEAD, pad_edge=False)
+    table = Table(title=title, box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for heading in ("", "A", "B", "A - B", "95 % interval", "paper A", "paper B"):
         table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
     for measure, found in analysis.comparisons.items():
@@ -122,9 +122,9 @@ def _means(analysis: Analysis) -> Table:
 
 def _tests(analysis: Analysis) -> Table:
     title = "Two-sided tests and effect sizes (positive: B is lower)"
-    table = Table(title=title, box=SIMPLE_HEAD, pad_edge=False)
+    table = Table(title=title, box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     df = next(iter(analysis.comparisons.values())).t.df
-    for heading in ("", f"t({df})", "p", "W", "n", "p", "Wilcoxon", "d_z", "r"):
+    for heading in ("", f"t({df})", "p", "W", "n", "p", "by", "d_z", "r"):
         justify: Literal["left", "right"] = "right" if heading else "left"
         table.add_column(heading, justify=justify, no_wrap=True)
     for measure, found in analysis.comparisons.items():
@@ -145,7 +145,7 @@ def _tests(analysis: Analysis) -> Table:
 
 
 def _remarks(analysis: Analysis) -> list[str]:
-    told = [f"Rates from {analysis.source}; paper: {DRIVERS} drivers, * marks the test it used."]
+    told = [f"Rates from {analysis.source}. Paper: {DRIVERS} drivers; * its test."]
     answers = analysis.questionnaire
     if answers:
         alphas = [f"{scale} {answers.reliability(scale):.2f}" for scale in answers.scores]

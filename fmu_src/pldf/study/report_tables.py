@@ -15,6 +15,7 @@ RATE_TITLES: Final = {
     "set_speed": "Set speed",
     "combined": "Pedals or set speed",
 }
+_SMALLEST_P: Final = 1e-300
 _MINUS: Final = "&minus;"
 _SCALES: Final = {
     "usefulness": "Usefulness (&minus;2 … +2)",
@@ -81,7 +82,7 @@ def _tests(measure: str, found: Comparison) -> str:
     cells = (
         f"<th>{RATE_TITLES[measure]}</th>",
         _cell(_test(found, paper.kind), "left"),
-        _cell(f"{paper.text}, p = {_p(paper.p)}", "left paper"),
+        _cell(f"{paper.text}, {_p(paper.p)}", "left paper"),
         _cell(f"{found.d_z:.2f}"),
         _cell(f"{found.rank_biserial:.2f}"),
         _cell(f"{found.fell} of {found.t.df + 1}"),
@@ -95,16 +96,19 @@ def _cell(content: str, style: str = "") -> str:
 
 def _test(found: Comparison, kind: str) -> str:
     if kind == "t":
-        return f"t({found.t.df}) = {found.t.t:.2f}, p = {_p(found.t.p)}"
+        return f"t({found.t.df}) = {found.t.t:.2f}, {_p(found.t.p)}"
     ranks = found.signed_rank
-    return f"W = {ranks.w:g}, n = {ranks.pairs}, p = {_p(ranks.p)} ({ranks.method})"
+    return f"W = {ranks.w:g}, n = {ranks.pairs}, {_p(ranks.p)} ({ranks.method})"
 
 
 def _p(p: float) -> str:
+    """Return ``p = 0.012``, small values with a power of ten."""
     if p >= 0.001:
-        return f"{p:.3f}"
+        return f"p = {p:.3f}"
+    if p < _SMALLEST_P:
+        return "p &lt; 10<sup>&minus;300</sup>"
     digits, _, power = f"{p:.2e}".partition("e")
-    return f"{digits} · 10<sup>&minus;{abs(int(power))}</sup>"
+    return f"p = {digits} · 10<sup>&minus;{abs(int(power))}</sup>"
 
 
 def _change(a: float, b: float) -> str:
@@ -124,7 +128,7 @@ def scores_table(analysis: Analysis) -> str:
         found = analysis.comparisons[scale]
         change = found.difference
         cells = (
-            f"{found.mean_first:.2f}", f"{found.mean_second:.2f}",
+            *(f"{mean:.2f}".replace("-", _MINUS) for mean in (found.mean_first, found.mean_second)),
             f"{-change.value:+.2f} ({-change.high:.2f} … {-change.low:.2f})".replace("-", _MINUS),
             _test(found, "wilcoxon"), f"{-found.rank_biserial:.2f}".replace("-", _MINUS),
             f"{analysis.questionnaire.reliability(scale):.2f}",
