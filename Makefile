@@ -1,6 +1,7 @@
 # make study   set up .venv, build the FMUs, drive one driver into out/, 43 drivers into out/paper/
 # make test    all tests          make lint    formatting, lints, types
 # make bench   all speeds, JSON   make build   the FMUs into dist/      make clean
+# make native  the FMUs without Python into dist/native/
 #
 # Needs make and Python 3.11 or newer; PYTHON=... chooses one. STUDY=... passes options for the one
 # driver, e.g. make study STUDY="--seed 7 --set wish.offset_mps=-2"
@@ -19,7 +20,7 @@ BUILT := dist/.built
 FMU_SOURCES := $(shell find fmu_src vehicle_models build_fmu.py LICENSE -type f \
 	-not -path '*/__pycache__/*' -not -path '*.egg-info/*')
 
-.PHONY: help study test lint format bench build setup clean
+.PHONY: help study test lint format bench build native setup clean
 
 help:
 	@sed -n '1,/^$$/s/^# \{0,1\}//p' Makefile
@@ -46,6 +47,9 @@ bench: $(BUILT)
 	@$(BIN)/python benchmarks/bench.py
 
 build: $(BUILT)
+
+native: $(READY)
+	$(BIN)/python build_fmu.py --native --out dist
 
 setup: $(READY)
 

@@ -215,7 +215,8 @@ bool prepared_parse(Prepared *p, const char *kind, int64_t columns, char *why) {
         !take_entry(&cursor, "rows ", 9, &p->rows) ||
         !take_entry(&cursor, "line ", 1, &p->has_line) || !take_end(&cursor, p->bytes))
         return false;
-    if (p->columns != columns || p->rows < 1 || p->rows > NODES_MAX + 1)
+    int64_t fewest = strcmp(kind, "route") == 0 ? 3 : 1;
+    if (p->columns != columns || p->rows < fewest || p->rows > NODES_MAX + 1)
         return refuse(&cursor, "the columns and rows of such a file");
     p->head = cursor.at - p->bytes;
     if (!check_end(p->bytes, p->size, p->head + 8 * p->columns * p->rows + CHECKSUM_SIZE, why))

@@ -2,7 +2,15 @@
    usage: native_host LIBRARY GUID RESOURCES [LIBRARY GUID RESOURCES]
    The value references of Real inputs and outputs come in the environment as
    REALS_IN and REALS_OUT. Prints the outputs of every step of a scripted drive. */
+#ifdef _WIN32
+#include <windows.h>
+#define dlopen(path, how) ((void *)LoadLibraryA(path))
+#define dlsym(library, name) ((void *)GetProcAddress((HMODULE)(library), name))
+#define dlclose(library) (FreeLibrary((HMODULE)(library)) ? 0 : 1)
+#define dlerror() "LoadLibrary failed"
+#else
 #include <dlfcn.h>
+#endif
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -69,12 +77,15 @@ static void start(const Fmu *fmu, fmi2Component c) {
 
 static void drive(const Fmu *fmu, fmi2Component c, int from, int to, bool print) {
     fmi2Real in[MANY], out[MANY];
+    fmi2SetRealTYPE *set = F(fmu, SetReal);
+    fmi2GetRealTYPE *get = F(fmu, GetReal);
+    fmi2DoStepTYPE *step = F(fmu, DoStep);
     for (int k = from; k < to; k++) {
         for (size_t i = 0; i < input_count; i++) in[i] = (double)((7 * k + 13 * (int)i) % 97) / 97.0;
         in[0] = 0.2 * k;
-        CHECK(F(fmu, SetReal)(c, inputs, input_count, in) == fmi2OK);
-        CHECK(F(fmu, DoStep)(c, 0.01 * k, 0.01, fmi2True) == fmi2OK);
-        CHECK(F(fmu, GetReal)(c, outputs, output_count, out) == fmi2OK);
+        CHECK(set(c, inputs, input_count, in) == fmi2OK);
+        CHECK(step(c, 0.01 * k, 0.01, fmi2True) == fmi2OK);
+        CHECK(get(c, outputs, output_count, out) == fmi2OK);
         for (size_t i = 0; print && i < output_count; i++) printf("%a ", out[i]);
         if (print) printf("\n");
     }

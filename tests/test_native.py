@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -216,6 +218,21 @@ def test_c_host(native_folder: Path, c_host: Path, tmp_path: Path, name: str) ->
         assert found.tobytes() == np.array([float.fromhex(x) for x in line.split()]).tobytes()
     slave.free()
     assert list(tmp_path.iterdir()) == []
+
+
+def test_exports_the_functions_of_fmi_and_nothing_else(native_folder: Path) -> None:
+    host = Host(native_folder / "AdaptivePLDF.fmu")
+    path = host.folder / "binaries" / "linux64" / "AdaptivePLDF.so"
+    library = ctypes.CDLL(str(path))
+    declared = re.findall(
+        r"FMI2_Export \w+\s+(fmi2\w+);", (HEADERS / "fmi2Functions.h").read_text()
+    )
+    model_exchange = set(declared[declared.index("fmi2EnterEventMode") : -9])
+    for name in set(declared) - model_exchange:
+        assert hasattr(library, name), name
+    assert len(set(declared) - model_exchange) == 34
+    for name in ("model", "model_step", "session_step", "disk_read"):
+        assert not hasattr(library, name)
 
 
 def test_the_same_sources_give_the_same_bytes(native_folder: Path, tmp_path: Path) -> None:

@@ -142,7 +142,9 @@ def _retarget(text: str, triple: str, machine: Any) -> str:
 
 def _hide_all_but(module: Any, visible: set[str]) -> None:
     for thing in (*module.functions, *module.global_variables):
-        if not thing.is_declaration and thing.name not in visible:
+        if thing.name in visible:
+            thing.visibility = "hidden"  # for the C runtime, not for the host
+        elif not thing.is_declaration:
             thing.linkage = "internal"
     missing = visible - {f.name for f in module.functions if not f.is_declaration}
     if missing:
