@@ -166,6 +166,12 @@ def test_repeated_phases_of_a_study_file_are_compared_by_what_they_are(tmp_path:
     assert Source(tmp_path).compared() == {"A": ("A3", "A4"), "B": ("B1", "B2")}
 
 
+def test_which_drive_shows_what_another_taught(tmp_path: Path) -> None:
+    assert Source(tmp_path).development() == {"A2": "B1", "B1": "B2", "B2": "B3"}
+    (tmp_path / "study.toml").write_text('[drives]\nphases = ["A2", "B1"]\nper_phase = 2\n')
+    assert Source(tmp_path).development() == {"A2": "B1", "B1": "B2"}
+
+
 def test_the_acceptance_scale_is_scored_as_its_authors_do(tmp_path: Path) -> None:
     path = answers(tmp_path, {("P1", "B", item): "1" for item in LAAN})
     scores = read_questionnaire(path).scores

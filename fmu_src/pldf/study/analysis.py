@@ -21,7 +21,7 @@ from ..instance import ModelError
 from ..roads import Route
 from .drives_table import DriveRow, check_complete, check_phase, read_drives, row_of
 from .interventions import Rates
-from .phases import PHASES
+from .phases import PHASES, Phase
 from .questionnaire import Questionnaire, read_questionnaire
 from .recording import Recording, completed, read_recording
 from .statistics import Comparison, Interval, compare, mean_interval
@@ -62,20 +62,33 @@ class Source:
         except (OSError, ValueError) as error:
             raise ModelError(f"{path}: {error}") from error
 
-    def compared(self) -> dict[str, tuple[str, ...]]:
-        """Return, per system, the drives in which the drivers intervene.
-
-        A study file may repeat phases; its drives are then numbered anew.
-        """
+    def order(self) -> list[Phase]:
+        """Return the drives in the order of the study; repeated phases are numbered anew."""
         drives = self.study.get("drives", {})
         repeats = drives.get("per_phase", 1)
-        order = [name for name in drives.get("phases", PHASES) for _ in range(repeats)]
-        found: dict[str, tuple[str, ...]] = {}
-        for system in SYSTEMS:
-            mine = [name for name in order if name[0] == system]
-            names = mine if repeats == 1 else [f"{system}{n + 1}" for n in range(len(mine))]
-            kept = [n for n, name in zip(names, mine, strict=True) if PHASES[name].intervenes]
-            found[system] = tuple(dict.fromkeys(kept))
+        phases = [PHASES[name] for name in drives.get("phases", PHASES) for _ in range(repeats)]
+        if repeats == 1:
+            return phases
+        counts = dict.fromkeys(SYSTEMS, 0)
+        for at, phase in enumerate(phases):
+            system = phase.name[0]
+            counts[system] += 1
+            phases[at] = phase._replace(name=f"{system}{counts[system]}")
+        return phases
+
+    def compared(self) -> dict[str, tuple[str, ...]]:
+        """Return, per system, the drives in which the drivers intervene."""
+        acting = dict.fromkeys(phase.name for phase in self.order() if phase.intervenes)
+        return {s: tuple(name for name in acting if name[0] == s) for s in SYSTEMS}
+
+    def development(self) -> dict[str, str]:
+        """Return each drive learned from -> the next one with the learned profile."""
+        found: dict[str, str] = {}
+        taught = ""
+        for phase in self.order():
+            if phase.apply_learned and taught:
+                found.setdefault(taught, phase.name)
+            taught = phase.name if phase.learn else taught
         return found
 
     def recordings(self) -> dict[tuple[str, str], Path]:

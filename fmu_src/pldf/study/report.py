@@ -110,20 +110,20 @@ _CAPTIONS: Final = {
     "rates": (
         "Share of the driving time with interventions in the drives in which drivers intervene. "
         "Each grey line is one participant; the band is the 95 % confidence interval of the mean "
-        "(t distribution). A: base function; B: after learning (B1 from A2, B2 from A2 and B1). "
+        "(t distribution). A: base function; B: after learning from the drives before. "
         "Click on an entry of the legend to hide or show it."
     ),
     "drives": (
         "Speed driven, and below, drive by drive, where {driver} intervened. Drag along the "
         "distance to zoom, double click to go back, click on the legend to hide or show a drive. "
-        "In A3 and B3 the driver does not intervene."
+        "Drives in which the driver does not intervene are left out."
     ),
     "development": (
         "The speed profile that the function followed after each drive it learned from. The speeds "
         "driven are in the legend, to be switched on."
     ),
     "steps": (
-        "Intervention {number} of {driver} in A2, computed by the functions that the driving "
+        "Intervention {number} of {driver} in {drive}, computed by the functions that the driving "
         "function itself uses. 1: the recorded piece. 2: stretched to the left (eq. 1, factor "
         "{alpha:.2f} after its limits), since a driver acts later than the wish arises. 3: lifted "
         "so that it joins the recorded speed (eq. 2). 4: mean with the profile of that drive "
@@ -143,8 +143,10 @@ _CAPTIONS: Final = {
 
 
 def _facts(material: Material) -> dict[str, Any]:
-    steps = material.driver.steps if material.driver else None
-    return {"number": steps.number, "alpha": steps.alpha} if steps else {}
+    if material.driver is None or material.driver.steps is None:
+        return {}
+    steps = material.driver.steps
+    return {"number": steps.number, "alpha": steps.alpha, "drive": material.driver.explained}
 
 
 def _figure(name: str, figure: Any) -> str:

@@ -144,14 +144,16 @@ def development_figure(driver: DriverShown, facts: RouteFacts) -> Any:
     _add(figure, limit_line(s_m, np.asarray(facts.arrays.limit_mps)))
     _add(figure, line(s_m, base, BASE))
     styles = ((SKY, 1.5, "solid"), (GREEN, 2.0, "dashdot"), (BLACK, 2.6, "solid"))
-    for iteration, style in zip(driver.profile.iterations, styles, strict=False):
+    for iteration in driver.profile.iterations:
+        style = styles[min(iteration.number, len(styles)) - 1]
         look = Look(f"Profile after {iteration.note}", *style)
         group = {"legendgroup": iteration.note}
         _add(figure, line(s_m, iteration.learned_mps, look, **group))
         change = iteration.learned_mps - base
         _add(figure, line(s_m, change, look, showlegend=False, **group), row=2)
-    for phase in driver.acting:
-        _add(figure, driven_line(phase, driver.recordings[phase], visible="legendonly"))
+    for number, phase in enumerate(driver.acting):
+        recording = driver.recordings[phase]
+        _add(figure, driven_line(number, phase, recording, visible="legendonly"))
     figure.update_yaxes(title_text="Speed (km/h)", row=1, col=1)
     figure.update_yaxes(title_text="Learned minus<br>base (km/h)", row=2, col=1)
     return styled(figure, 600)
@@ -162,8 +164,8 @@ def drives_figure(driver: DriverShown, facts: RouteFacts) -> Any:
     figure = make_subplots(2, 1, shared_xaxes=True, vertical_spacing=0.05, row_heights=[0.66, 0.34])
     s_m = np.arange(float(driver.profile.nodes))
     _add(figure, limit_line(s_m, np.asarray(facts.arrays.limit_mps)))
-    for phase in driver.acting:
-        _add(figure, driven_line(phase, driver.recordings[phase]))
+    for number, phase in enumerate(driver.acting):
+        _add(figure, driven_line(number, phase, driver.recordings[phase]))
     lanes = driver.acting
     for kind, (name, colour, width, shift) in _KINDS.items():
         x, y, text = _lanes(driver.recordings, lanes, kind, shift)

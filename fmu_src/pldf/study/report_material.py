@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..function import DrivingFunction
 from ..instance import ModelError
@@ -25,9 +24,6 @@ from .recording import Recording
 from .route_facts import RouteFacts, route_facts
 from .steps import Steps, explain_steps
 
-# Learned in the first drive of each pair, seen in the second.
-DEVELOPMENT: Final = (("A2", "B1"), ("B1", "B2"), ("B2", "B3"))
-TAUGHT_FIRST: Final = "A2"
 STUDY: Final = "study.toml"
 VERSIONS: Final = "versions.json"
 LONG_RUN: Final = "long_run.csv"
@@ -44,7 +40,8 @@ class DriverShown:
         recordings: complete, by phase, in order of the study.
         profile: base and the profile after each learned drive (the note of its iteration), as far
             as it was driven.
-        steps: one intervention explained; None if nothing was learned in A2.
+        steps: one intervention explained; None if nothing was learned from ``explained``.
+        explained: the first drive learned from.
         acting: the drives recorded in which the driver intervenes.
     """
 
@@ -52,6 +49,7 @@ class DriverShown:
     recordings: Mapping[str, Recording]
     profile: StoredProfile
     steps: Steps | None
+    explained: str
     acting: tuple[str, ...]
 
 
@@ -168,11 +166,12 @@ def _parameter_ranges(path: Path) -> Mapping[str, tuple[float, float, float]]:
 def _choose(analysis: Analysis, source: Source, wanted: str | None) -> str | None:
     """Return whom to show: of those recorded, who is nearest to the median fall of the rate."""
     recorded = source.recordings()
-    complete = [p for p in analysis.participants if (p, TAUGHT_FIRST) in recorded]
+    first = _first_taught(source)
+    complete = [p for p in analysis.participants if (p, first) in recorded]
     if wanted is not None:
         if wanted not in complete:
             raise ModelError(
-                f"{source.folder}: no recordings/{wanted}_{TAUGHT_FIRST}.csv, so {wanted} cannot "
+                f"{source.folder}: no recordings/{wanted}_{first}.csv, so {wanted} cannot "
                 f"be shown; recorded are {', '.join(complete) or 'none'}"
             )
         return wanted
@@ -184,20 +183,30 @@ def _choose(analysis: Analysis, source: Source, wanted: str | None) -> str | Non
     return min(complete, key=lambda name: abs(falls[name] - median))
 
 
+def _first_taught(source: Source) -> str:
+    """Return the first drive that is learned from; it follows the base profile."""
+    return next((phase.name for phase in source.order() if phase.learn), "")
+
+
 def _driver(
     participant: str, source: Source, route: Route, function: DrivingFunction
 ) -> DriverShown:
+    first = _first_taught(source)
     known = replace(source, route=route)
     paths = {phase: path for (who, phase), path in known.recordings().items() if who == participant}
     recordings = {phase: known.read(path) for phase, path in paths.items()}
     for phase, recording in recordings.items():
         _require_route(paths[phase], recording, route)
-    profile = _development(recordings, route, np.array(function.profile.base_mps))
+    profile = StoredProfile(0, fingerprint(route), np.array(function.profile.base_mps))
+    for taught, seen in known.development().items():
+        if seen in recordings:
+            profile = profile.with_iteration(_followed(recordings[seen], profile, taught))
     return DriverShown(
         participant=participant,
         recordings=recordings,
         profile=profile,
-        steps=explain_steps(recordings[TAUGHT_FIRST], route, function),
+        steps=explain_steps(recordings[first], route, function),
+        explained=first,
         acting=tuple(p for names in source.compared().values() for p in names if p in recordings),
     )
 
@@ -213,19 +222,9 @@ def _require_route(path: Path, recording: Recording, route: Route) -> None:
         )
 
 
-def _development(
-    recordings: Mapping[str, Recording], route: Route, base_mps: NDArray[np.float64]
-) -> StoredProfile:
-    """Return the profiles that were followed, as the iterations of a profile."""
-    node = np.arange(float(len(base_mps)))
-    zeros = np.zeros(len(node))
-    profile = StoredProfile(0, fingerprint(route), base_mps)
-    for taught, seen in DEVELOPMENT:
-        if seen in recordings:
-            passed = np.maximum.accumulate(recordings[seen]["s_m"])
-            speeds = np.interp(node, passed, recordings[seen]["profile_mps"])
-            number = len(profile.iterations) + 1
-            profile = profile.with_iteration(
-                Iteration(number, taught, 0, speeds, zeros, zeros, zeros)
-            )
-    return profile
+def _followed(recording: Recording, profile: StoredProfile, taught: str) -> Iteration:
+    """Return the profile that a drive followed as the next iteration of ``profile``."""
+    passed = np.maximum.accumulate(recording["s_m"])
+    speeds = np.interp(np.arange(float(profile.nodes)), passed, recording["profile_mps"])
+    zeros = np.zeros(profile.nodes)
+    return Iteration(len(profile.iterations) + 1, taught, 0, speeds, zeros, zeros, zeros)

@@ -17,6 +17,7 @@ Floats = NDArray[np.float64]
 
 KMH: Final = 3.6
 EVERY_M: Final = 2.0  # one point of a recording per so many metres is drawn
+_ENTRIES_PER_ROW: Final = 6  # of a legend, about
 _GRID: Final = "#e3e3e3"
 
 
@@ -31,17 +32,14 @@ class Look(NamedTuple):
 
 LIMIT: Final = Look("Legal limit", GREY, 2)
 BASE: Final = Look("Base profile", BLUE, 2, "dash")
-DRIVEN: Final = {
-    phase: Look(f"Speed driven in {phase}", colour, 1.8, dash)
-    for phase, colour, dash in (
-        ("A1", SKY, "dot"),
-        ("A2", BLUE, "solid"),
-        ("A3", GREY, "dot"),
-        ("B1", ORANGE, "dot"),
-        ("B2", VERMILLION, "solid"),
-        ("B3", PURPLE, "dot"),
-    )
-}
+_DRIVEN: Final = (
+    (SKY, "dot"),
+    (BLUE, "solid"),
+    (ORANGE, "dot"),
+    (VERMILLION, "solid"),
+    (PURPLE, "dash"),
+    (GREY, "dash"),
+)
 
 
 def line(s_m: Floats, speed_mps: Floats, look: Look, **more: Any) -> dict[str, Any]:
@@ -67,11 +65,12 @@ def limit_line(s_m: Floats, limit_mps: Floats) -> dict[str, Any]:
     return trace
 
 
-def driven_line(phase: str, recording: Recording, **more: Any) -> dict[str, Any]:
-    """Return the trace of the speed driven."""
+def driven_line(number: int, phase: str, recording: Recording, **more: Any) -> dict[str, Any]:
+    """Return the trace of the speed driven in the drive with this number, from 0."""
     s_m = np.arange(recording["s_m"][0], recording["s_m"][-1], EVERY_M)
     speed = np.interp(s_m, np.maximum.accumulate(recording["s_m"]), recording["speed_mps"])
-    return line(s_m, speed, DRIVEN[phase], **more)
+    colour, dash = _DRIVEN[number % len(_DRIVEN)]
+    return line(s_m, speed, Look(f"Speed driven in {phase}", colour, 1.8, dash), **more)
 
 
 def short(values: Floats) -> NDArray[np.float32]:
@@ -81,13 +80,15 @@ def short(values: Floats) -> NDArray[np.float32]:
 
 def styled(figure: Any, height: int, distance: bool = True) -> Any:
     """Give a figure the common look; zooming is along the distance only."""
+    entries = sum(trace.showlegend is not False for trace in figure.data)
+    below = 84 + 20 * (entries // _ENTRIES_PER_ROW)
     figure.update_layout(
         template="none",
         height=height,
         paper_bgcolor="#fff",
         plot_bgcolor="#fff",
         font={"family": "Helvetica, Arial, sans-serif", "size": 14, "color": "#222"},
-        margin={"l": 74, "r": 16, "t": 40, "b": 104},
+        margin={"l": 74, "r": 16, "t": 40, "b": below},
         hovermode="x unified" if distance else "closest",
         legend={"orientation": "h", "x": 0, "yref": "container", "y": 0, "yanchor": "bottom"},
         hoverlabel={"bgcolor": "#fff", "font": {"size": 13}},
