@@ -194,10 +194,8 @@ def test_c_host(native_folder: Path, c_host: Path, tmp_path: Path, name: str) ->
         model = host.description.coSimulation.modelIdentifier
         library = host.folder / "binaries" / "linux64" / f"{model}.so"
         arguments += [str(library), host.description.guid, f"file://{host.folder}/resources"]
-    variables = [v for v in hosts[0].description.modelVariables if v.type == "Real"]
-    inputs = [v.valueReference for v in variables if v.causality == "input"]
-    outputs = [v.valueReference for v in variables if v.causality == "output"]
-    environment = {"REALS_IN": ",".join(map(str, inputs)), "REALS_OUT": ",".join(map(str, outputs))}
+    inputs, outputs = (reals(hosts[0], causality) for causality in ("input", "output"))
+    environment = {"REALS_IN": listed(inputs), "REALS_OUT": listed(outputs)}
     done = subprocess.run(
         [c_host, *arguments],
         env={"PATH": os.environ["PATH"], **environment},
@@ -218,6 +216,46 @@ def test_c_host(native_folder: Path, c_host: Path, tmp_path: Path, name: str) ->
         assert found.tobytes() == np.array([float.fromhex(x) for x in line.split()]).tobytes()
     slave.free()
     assert list(tmp_path.iterdir()) == []
+
+
+def reals(host: Host, causality: str) -> list[int]:
+    """Return the value references of the Real variables with this causality."""
+    variables = host.description.modelVariables
+    return [v.valueReference for v in variables if (v.type, v.causality) == ("Real", causality)]
+
+
+def listed(references: list[int]) -> str:
+    return ",".join(map(str, references))
+
+
+def test_c_host_learns_what_fmpy_learns(native_folder: Path, c_host: Path, tmp_path: Path) -> None:
+    """With the store from the environment; the second instance saved late and lost nothing."""
+    host = Host(native_folder / "AdaptivePLDF.fmu")
+    inputs, outputs = reals(host, "input"), reals(host, "output")
+    (learn,) = [
+        v.valueReference for v in host.description.modelVariables if v.name == "learn_faithful"
+    ]
+    library = host.folder / "binaries" / "linux64" / "AdaptivePLDF.so"
+    environment = {
+        "REALS_IN": listed(inputs),
+        "REALS_OUT": listed(outputs),
+        "LEARN": str(learn),
+        "PLDF_PROFILE_STORE": "relative/store",
+    }
+    arguments = [c_host, library, host.description.guid, f"file://{host.folder}/resources"]
+    subprocess.run(arguments, env=environment, cwd=tmp_path, capture_output=True, check=True)
+    store = tmp_path / "relative" / "store"
+    slave = host.instantiate().start(learn_faithful=True, profile_store=str(tmp_path / "fmpy"))
+    for k in range(2000):
+        values = [float((7 * k + 13 * i) % 97) / 97.0 for i in range(len(inputs))]
+        slave.fmu.setReal(inputs, [0.2 * k, *values[1:]])
+        slave.fmu.doStep(0.01 * k, 0.01)
+    slave.fmu.terminate()
+    slave.free()
+    (expected,) = (tmp_path / "fmpy").iterdir()
+    late = expected.with_suffix(".conflict-1.pldf").name
+    assert sorted(path.name for path in store.iterdir()) == [late, expected.name]
+    assert (store / expected.name).read_bytes() == expected.read_bytes()
 
 
 def test_exports_the_functions_of_fmi_and_nothing_else(native_folder: Path) -> None:
