@@ -1,0 +1,162 @@
+"""Fit the population of simulated drivers to what the paper reports for system A alone.
+
+    python studies/fit_population.py            # minutes; writes studies/population.toml
+
+Four numbers of the population are scaled until the mean rates of the first two drives are near the
+three reported ones: the median threshold below which drivers do nothing, their mean wished speed
+above the limit, the median time of steady cruise before they use the lever, and the median strength
+with which they accelerate and slow down. Everything else keeps its starting value. The learning
+system is neither driven nor looked at here, so what the population does with it is a prediction
+(studies/predict_study.py).
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from pldf.disk import replace_file
+from pldf.study.participants import StudySettings
+from pldf.study.phases import PHASES, choose_route
+from pldf.study.population import KMH, Distribution, Lognormal, Normal, sample_participants
+from pldf.study.runner import in_processes
+from pldf.study.unit import Job
+from scipy.optimize import least_squares
+
+Floats = NDArray[np.float64]
+
+# Mean rates with the base function in percent, from the paper: pedal, set speed, combined.
+TARGETS: Final = np.array([22.32, 39.76, 54.68])
+DRIVES: Final = ("A1", "A2")
+# Eight studies' worth of people who take part in no study of their own. The means of fewer people
+# differ by chance more than the fit is worth.
+PEOPLE: Final = 8 * 43
+SEED: Final = 1000
+# What is fitted, as multiples of the starting values, and how far it may go.
+FACTORS: Final = ("threshold", "offset", "patience", "strength")
+START: Final = np.ones(len(FACTORS))
+BOUNDS: Final = (0.3, 3.0)
+# Percentage points that a factor e away from its starting value counts as: four numbers for three.
+PULL: Final = 0.5
+# Wide enough for the jumps of single drivers' rates to even out.
+DIFFERENCE_STEP: Final = 0.1
+EVALUATIONS_MAX: Final = 5
+CLOSE_ENOUGH: Final = 0.01  # relative change of the factors that ends the fit
+
+
+def fitted(factors: Floats) -> Distribution:
+    """Return the starting distribution with the laws of ``FACTORS`` scaled."""
+    threshold, offset, patience, strength = (float(factor) for factor in factors)
+    return Distribution().with_laws(
+        {
+            "driver_threshold_mps": Lognormal(threshold * 5.0 * KMH, 0.3, low=0.5 * KMH),
+            "wish_offset_mps": Normal(offset * 7.0 * KMH, 5.0 * KMH),
+            "driver_lever_settled_s": Lognormal(patience * 3.0, 0.3, low=0.3, high=20.0),
+            "wish_accel_max_mps2": Lognormal(strength * 1.5, 0.2, low=0.5, high=3.0),
+            "wish_accel_min_mps2": Lognormal(strength * -1.3, 0.2, low=-3.0, high=-0.5),
+        }
+    )
+
+
+@dataclass
+class Fit:
+    """Mean rates of a population as a function of the factors; remembers what was tried."""
+
+    people: int
+    jobs: int
+    log: list[tuple[Floats, Floats]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        """Choose road and drives."""
+        route, road = choose_route("study")
+        phases = tuple(PHASES[name] for name in DRIVES)
+        self.job = Job(StudySettings(route=route, road=road, phases=phases))
+
+    def rates(self, factors: Floats) -> Floats:
+        """Return the mean pedal, set-speed and combined rates in percent."""
+        people = sample_participants(self.people, SEED, fitted(factors))
+        found = {
+            done.participant: [
+                (row.pedal_rate, row.set_speed_rate, row.combined_rate) for row in done.rows
+            ]
+            for done in in_processes(self.jobs)(self.job, people)
+        }
+        means = 100.0 * np.mean([found[person.id] for person in people], axis=(0, 1))
+        self.log.append((factors.copy(), means))
+        print(
+            f"{len(self.log):3d}  factors {_numbers(factors)}  rates {_numbers(means)}", flush=True
+        )
+        return means
+
+    def run(self) -> Floats:
+        """Return the best factors that were tried, to four decimals."""
+        least_squares(
+            lambda factors: np.append(self.rates(factors) - TARGETS, PULL * np.log(factors)),
+            START, bounds=BOUNDS, diff_step=DIFFERENCE_STEP, xtol=CLOSE_ENOUGH,
+            max_nfev=EVALUATIONS_MAX,
+        )  # fmt: skip
+        return np.round(self.best[0], 4)
+
+    @property
+    def best(self) -> tuple[Floats, Floats]:
+        """The factors tried whose worst rate is nearest to its target, and their rates."""
+        return min(self.log, key=lambda tried: float(np.abs(tried[1] - TARGETS).max()))
+
+
+def _numbers(values: Floats) -> str:
+    return "[" + ", ".join(f"{value:.4f}" for value in values) + "]"
+
+
+def as_toml(fit: Fit, factors: Floats) -> str:
+    """Return the distribution in the form of a study file, with the record of the fit."""
+    lines = [
+        "# Drivers fitted to system A by studies/fit_population.py; nothing else was looked at.",
+        "# The table [distribution] is that of studies/paper.toml.",
+        "",
+        "[fit]",
+        'rates = ["pedal", "set_speed", "combined"]',
+        f"targets_percent = {_numbers(TARGETS)}",
+        f"reached_percent = {_numbers(fit.best[1])}",
+        f"people = {fit.people}",
+        f"seed = {SEED}",
+        f"drives = {list(DRIVES)}".replace("'", '"'),
+        f"factors = {list(FACTORS)}".replace("'", '"'),
+        "# In the order tried: factors, then the rates they gave.",
+        "tried = [",
+        *(f"  [{_numbers(tried)}, {_numbers(means)}]," for tried, means in fit.log),
+        "]",
+        "",
+        "[distribution]",
+    ]
+    for name, law in fitted(factors).as_table().items():
+        numbers = (
+            f'{key} = "{value}"' if isinstance(value, str) else f"{key} = {value:.6g}"
+            for key, value in law.items()
+        )
+        lines.append(f'"{name}" = {{ {", ".join(numbers)} }}')
+    return "\n".join(lines) + "\n"
+
+
+def main() -> int:
+    """Fit and write."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    default = Path(__file__).with_name("population.toml")
+    parser.add_argument("--out", type=Path, default=default, help=f"default: {default.name}")
+    parser.add_argument("--people", type=int, default=PEOPLE)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="processes")
+    options = parser.parse_args()
+    fit = Fit(options.people, options.jobs)
+    factors = fit.run()
+    replace_file(options.out, as_toml(fit, factors).encode())
+    print(f"written: {options.out}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
