@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeElapsedColumn
 
 from ..instance import ModelError
 from ..study.fmu import Fmu, Said, Value
@@ -101,20 +101,27 @@ def _value(fmu: Fmu, variable: str, text: str) -> Value:
     return value
 
 
-@contextmanager
-def progress_bar(total_m: float) -> Iterator[Progress]:
-    """Show a bar on stderr while driving; nothing when stderr is not a terminal."""
+def stderr_progress(*columns: ProgressColumn) -> Progress:
+    """Return a progress display of ``columns`` that is silent where nobody watches."""
     console = Console(file=sys.stderr)
-    with Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.completed:.2f} of {task.total:.2f} km"),
-        TimeElapsedColumn(),
+    return Progress(
+        *columns,
         console=console,
         transient=True,
         disable=not console.is_terminal,
         redirect_stdout=False,
         redirect_stderr=False,
+    )
+
+
+@contextmanager
+def progress_bar(total_m: float) -> Iterator[Progress]:
+    """Show a bar on stderr while driving; nothing when stderr is not a terminal."""
+    with stderr_progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed:.2f} of {task.total:.2f} km"),
+        TimeElapsedColumn(),
     ) as bar:
         bar.add_task("Getting ready", total=total_m / 1000.0)
         yield bar

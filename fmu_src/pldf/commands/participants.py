@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from rich.console import Console
 from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
@@ -24,6 +23,7 @@ from ..study.results import DRIVES, PARTICIPANTS, Results
 from ..study.runner import in_processes, on_cluster, run_missing
 from ..study.study_file import Study, read_study
 from ..study.unit import Job
+from .coupled import stderr_progress
 
 
 def add_running(parser: argparse.ArgumentParser) -> None:
@@ -81,19 +81,13 @@ def run_file(options: argparse.Namespace) -> None:
 @contextmanager
 def _progress(study: Study, results: Results) -> Iterator[Progress]:
     """Show a bar on stderr with the time left; nothing when stderr is not a terminal."""
-    console = Console(file=sys.stderr)
-    with Progress(
+    with stderr_progress(
         TextColumn("{task.description}"),
         BarColumn(),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
         TextColumn("left"),
         TimeRemainingColumn(),
-        console=console,
-        transient=True,
-        disable=not console.is_terminal,
-        redirect_stdout=False,
-        redirect_stderr=False,
     ) as bar:
         count = len(study.participants)
         bar.add_task("participants", total=count, completed=count - len(results.missing()))
