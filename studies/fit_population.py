@@ -76,6 +76,7 @@ class Fit:
         """Choose road and drives."""
         route, road = choose_route("study")
         phases = tuple(PHASES[name] for name in DRIVES)
+        self.reached = TARGETS
         self.job = Job(StudySettings(route=route, road=road, phases=phases))
 
     def rates(self, factors: Floats) -> Floats:
@@ -95,18 +96,14 @@ class Fit:
         return means
 
     def run(self) -> Floats:
-        """Return the best factors that were tried, to four decimals."""
-        least_squares(
+        """Return the factors that the fit ends with, to four decimals."""
+        found = least_squares(
             lambda factors: np.append(self.rates(factors) - TARGETS, PULL * np.log(factors)),
             START, bounds=BOUNDS, diff_step=DIFFERENCE_STEP, xtol=CLOSE_ENOUGH,
             max_nfev=EVALUATIONS_MAX,
         )  # fmt: skip
-        return np.round(self.best[0], 4)
-
-    @property
-    def best(self) -> tuple[Floats, Floats]:
-        """The factors tried whose worst rate is nearest to its target, and their rates."""
-        return min(self.log, key=lambda tried: float(np.abs(tried[1] - TARGETS).max()))
+        self.reached = next(m for tried, m in self.log if np.array_equal(tried, found.x))
+        return np.round(found.x, 4)
 
 
 def _numbers(values: Floats) -> str:
@@ -122,7 +119,7 @@ def as_toml(fit: Fit, factors: Floats) -> str:
         "[fit]",
         'rates = ["pedal", "set_speed", "combined"]',
         f"targets_percent = {_numbers(TARGETS)}",
-        f"reached_percent = {_numbers(fit.best[1])}",
+        f"reached_percent = {_numbers(fit.reached)}",
         f"people = {fit.people}",
         f"seed = {SEED}",
         f"drives = {list(DRIVES)}".replace("'", '"'),
