@@ -197,20 +197,12 @@ def _export(options: argparse.Namespace) -> None:
     lines = ["s_m,base_mps,learned_mps,offset_mps", *(",".join(map(repr, row)) for row in rows)]
     text = "\n".join(lines) + "\n"
     if options.out is None:
-        _print_text(text)
+        sys.stdout.write(text)
         return
     try:
         options.out.write_text(text, encoding="ascii", newline="\n")
     except OSError as error:
         raise ModelError(f"{options.out}: cannot be written ({error.strerror})") from error
-
-
-def _print_text(text: str) -> None:
-    try:
-        sys.stdout.write(text)
-        sys.stdout.flush()
-    except BrokenPipeError:  # the reader (head, a pager) has seen enough; that is no error
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _rollback(options: argparse.Namespace) -> None:
