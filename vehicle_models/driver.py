@@ -7,13 +7,12 @@ from typing import cast
 
 from pldf.instance import Arrays, Instance, views, zeros
 from pldf.kernel.arrays import Work
-from pldf.roads import route_arrays
+from pldf.roads import chosen_route, route_arrays
 
 from .driver_kernel import driver_start, driver_step
 from .driver_script import packed_script, read_script, script_arrays
 from .driver_state import PREFERENCE, SCRIPT, DriverState, DriverTexts
 from .script_kernel import ScriptArrays
-from .vehicle import chosen_route
 from .wish_kernel import WishArrays, prepare_wish
 
 INVALID_INPUT = (

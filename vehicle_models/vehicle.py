@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from pldf.instance import Arrays, Instance, view
-from pldf.roads import Route, packed_route, read_route, route_arrays
+from pldf.roads import chosen_route, route_arrays
 
 from .vehicle_kernel import vehicle_refresh, vehicle_start, vehicle_step
 from .vehicle_state import VehicleState, VehicleTexts
@@ -57,8 +57,3 @@ class LongitudinalVehicle(Instance[VehicleState]):
         if self.record.invalid_input and not self.record.warned:
             self.record.warned = 1
             self.report("warning", INVALID_INPUT)
-
-
-def chosen_route(route_id: int, route_file: str) -> Route:
-    """Return the route of a model: its file if one is named, else the packed route."""
-    return read_route(route_file) if route_file else packed_route(route_id)

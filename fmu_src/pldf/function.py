@@ -26,7 +26,7 @@ from .kernel.learning import learn_drive
 from .kernel.preparation import adopt_learned, start_drive
 from .kernel.signals import text_parameter
 from .kernel.state import PldfState
-from .roads import Route, fingerprint, packed_route, read_route, route_arrays
+from .roads import Route, chosen_route, fingerprint, route_arrays
 from .store import (
     STORE_VARIABLE,
     Iteration,
@@ -76,7 +76,7 @@ class DrivingFunction(Instance[PldfState]):
 
     def initialize(self) -> None:
         """Read route and profile, plan, and make the outputs valid."""
-        route = self._read_route()
+        route = chosen_route(self.record.route_id, self.texts.route_file)
         self.prepare(route)
         self.follow(self._load(fingerprint(route)))
         self.refresh()
@@ -148,11 +148,6 @@ class DrivingFunction(Instance[PldfState]):
         learn_drive(self.record, self.route, self.profile, self.trace, self.work, self.following)
         self.learned = next_iteration(self.record, self.following, self.stored)
         return self.learned
-
-    def _read_route(self) -> Route:
-        if self.texts.route_file:
-            return read_route(self.texts.route_file)
-        return packed_route(self.record.route_id)
 
     def _open_store(self) -> ProfileStore | None:
         folder = self.texts.profile_store or os.environ.get(STORE_VARIABLE, "")

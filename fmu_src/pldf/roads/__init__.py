@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from .csv_file import write_route_csv
-from .load import open_route, packed_route, read_route
+from .load import chosen_route, open_route, packed_route, read_route
 from .route import Route, fingerprint, route_arrays
 
 __all__ = [
     "Route",
+    "chosen_route",
     "fingerprint",
     "open_route",
     "packed_route",

@@ -71,3 +71,12 @@ def packed_route(route_id: int) -> Route:
         known = ", ".join(f"{i} = {Path(name).stem}" for i, name in enumerate(PACKED))
         raise ModelError(f"route_id {route_id} is unknown; packed routes: {known}")
     return read_route(DATA / PACKED[route_id])
+
+
+def chosen_route(route_id: int, route_file: str) -> Route:
+    """Return the route that a model's parameters name: the file if there is one, else the packed.
+
+    Raises:
+        ModelError: as ``read_route`` and ``packed_route``.
+    """
+    return read_route(route_file) if route_file else packed_route(route_id)
