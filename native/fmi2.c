@@ -154,11 +154,11 @@ static bool can(fmi2Component c, const void *references, size_t count, const voi
     }
 
 GET(Real, KIND_REAL, s->state.record[cell].real)
-GET(Integer, KIND_INTEGER, (fmi2Integer)s->state.record[cell].integer)
+GET(Integer, KIND_INTEGER | KIND_ENUMERATION, (fmi2Integer)s->state.record[cell].integer)
 GET(Boolean, KIND_BOOLEAN, (fmi2Boolean)s->state.record[cell].integer)
 GET(String, KIND_STRING, s->state.texts[cell])
 SET(Real, KIND_REAL, s->state.record[v->cell].real = values[i])
-SET(Integer, KIND_INTEGER, s->state.record[v->cell].integer = values[i])
+SET(Integer, KIND_INTEGER | KIND_ENUMERATION, s->state.record[v->cell].integer = values[i])
 SET(Boolean, KIND_BOOLEAN, s->state.record[v->cell].integer = values[i] != fmi2False)
 SET(String, KIND_STRING, if (!session_set_text(s, v, values[i])) return fmi2Error)
 

@@ -14,7 +14,7 @@ typedef union {
 /* record, block of columns, number of nodes and of script lines, step in s */
 typedef void Entry(Cell *, double *, int64_t, int64_t, double);
 
-enum { KIND_REAL = 1, KIND_INTEGER = 2, KIND_BOOLEAN = 4, KIND_STRING = 8 };
+enum { KIND_REAL = 1, KIND_INTEGER = 2, KIND_BOOLEAN = 4, KIND_STRING = 8, KIND_ENUMERATION = 16 };
 enum { PARAMETER, FIXED_PARAMETER, INPUT, OUTPUT };
 
 typedef struct { /* its index is the value reference */
@@ -25,7 +25,7 @@ typedef struct { /* its index is the value reference */
 } Variable;
 
 typedef struct {
-    const char *guid, *name;
+    const char *guid, *token, *name; /* of FMI 2.0, of FMI 3.0, of the model */
     const Variable *variables;
     int32_t variable_count;
     const Cell *defaults;

@@ -15,7 +15,7 @@ from .model import ENTRY_NAMES, NativeModel
 _KINDS: Final = {
     "Real": "KIND_REAL",
     "Integer": "KIND_INTEGER",
-    "Enumeration": "KIND_INTEGER",
+    "Enumeration": "KIND_ENUMERATION",
     "Boolean": "KIND_BOOLEAN",
     "String": "KIND_STRING",
 }
