@@ -204,6 +204,11 @@ def test_the_start_must_be_clear(read: Reader) -> None:
         read(*two, start_road="9")
 
 
+def test_two_roads_with_one_id_are_refused(read: Reader) -> None:
+    with pytest.raises(ModelError, match=r"line \d+: <road> id '7' is that of line \d+ too"):
+        read(straight("7"), straight("8"), straight("7"))
+
+
 def test_a_start_road_inside_the_chain_begins_there(read: Reader) -> None:
     chain = (
         straight("a", link=link("successor", "b", "start")),

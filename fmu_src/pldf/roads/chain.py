@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
@@ -30,8 +31,8 @@ class Network:
 
     def __init__(self, root: Element, place: Place) -> None:
         self.place = place
-        self.roads = {e.attributes.get("id", ""): e for e in root.all("road")}
-        self.junctions = {e.attributes.get("id", ""): e for e in root.all("junction")}
+        self.roads = _by_id(root.all("road"), place)
+        self.junctions = _by_id(root.all("junction"), place)
         if not self.roads:
             raise place.error(root, "no <road> in this file")
 
@@ -123,6 +124,17 @@ class Network:
             linked_at_end = back is not None and back.attributes.get("elementId") == before.id
             contact = "end" if linked_at_end else "start"
         return Leg(road, against=contact == "end")
+
+
+def _by_id(elements: Iterable[Element], place: Place) -> dict[str, Element]:
+    found: dict[str, Element] = {}
+    for element in elements:
+        name = element.attributes.get("id", "")
+        if name in found:
+            text = f"id {name!r} is that of line {found[name].line} too; ids must differ"
+            raise place.error(element, f"<{element.tag}> {text}")
+        found[name] = element
+    return found
 
 
 def _link(road: Element, end: str) -> Element | None:
