@@ -8,7 +8,6 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +17,7 @@ from pldf.function import DrivingFunction
 from pldf.kernel.signals import signals_of
 from pldf.roads import packed_route
 from pldf.study.fmu import Fmu
-from pldf.study.master import drive, unpacked
+from pldf.study.master import drive
 from pldf.study.phases import PHASES, Setting, values_of
 from pldf.study.recording import write_recording
 
@@ -30,23 +29,6 @@ if sys.platform != "linux":
 
 from pldf.native.build import HEADERS
 from pldf.native.prepared import write_prepared_route
-
-FOLDER = Path(__file__).parent
-
-
-@pytest.fixture(scope="session")
-def native_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder with the native FMUs of this platform, built and validated by fmpy."""
-    folder = tmp_path_factory.mktemp("native")
-    assert build_fmu.main(["--native", "--target", "linux64", "--out", str(folder)]) == 0
-    return folder / "native"
-
-
-@pytest.fixture(scope="session")
-def native_fmus(native_folder: Path) -> Iterator[dict[str, Fmu]]:
-    with unpacked(native_folder) as found:
-        yield found
-
 
 # The coupled loop
 
@@ -171,17 +153,6 @@ def test_a_damaged_profile_is_kept_aside(
 
 
 # A host without Python
-
-
-@pytest.fixture(scope="session")
-def c_host(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    program = tmp_path_factory.mktemp("host") / "native_host"
-    zig = [sys.executable, "-m", "ziglang", "cc", "-std=gnu11", "-O1", f"-I{HEADERS}"]
-    libraries = ["-ldl", "-lm"]
-    subprocess.run(
-        [*zig, str(FOLDER / "native_host.c"), "-o", str(program), *libraries], check=True
-    )
-    return program
 
 
 @pytest.mark.parametrize("name", ["AdaptivePLDF", "LongitudinalVehicle", "ScriptedDriver"])
