@@ -84,20 +84,18 @@ def read_questionnaire(path: Path, without: Collection[str] = ()) -> Questionnai
     Raises:
         ModelError: naming file, line and column of what is missing or no answer.
     """
-    lines = list(_rows(path))
-    header_line, header = lines[0]
+    (header_line, header), *lines = _rows(path)
     names = [name.removesuffix(REVERSED) for name in header]
     group = next((name for name in ("system", "phase") if name in names), None)
     if group is None or "participant" not in names:
         raise ModelError(
             f"{path}, line {header_line}: needs the columns participant and system (or phase)"
         )
-    reversed_items = frozenset(name.removesuffix(REVERSED) for name in header if name not in names)
+    turned = frozenset(name.removesuffix(REVERSED) for name in header if name not in names)
     scales = _scales_of(path, header_line, names)
-    wanted = [item for scale in scales for item in SCALES[scale]]
-    found: dict[str, dict[Key, list[float]]] = {item: {} for item in wanted}
+    found: dict[str, dict[Key, list[float]]] = {i: {} for scale in scales for i in SCALES[scale]}
     lines_of: dict[Key, int] = {}
-    for line, cells in lines[1:]:
+    for line, cells in lines:
         if len(cells) != len(header):
             raise ModelError(f"{path}, line {line}: {len(cells)} values for {len(header)} columns")
         row = dict(zip(names, cells, strict=True))
@@ -108,9 +106,14 @@ def read_questionnaire(path: Path, without: Collection[str] = ()) -> Questionnai
         if lines_of.setdefault(answered, line) != line:
             raise ModelError(f"{where}: answered in line {lines_of[answered]} already")
         key = _key(where, *answered)
-        for item in wanted:
-            value = _scored(where, item, row[item], item in reversed_items)
-            found[item].setdefault(key, []).append(value)
+        for item, answers in found.items():
+            answers.setdefault(key, []).append(_scored(where, item, row[item], item in turned))
+    return _with_scores(found, scales)
+
+
+def _with_scores(
+    found: Mapping[str, Mapping[Key, Sequence[float]]], scales: Sequence[str]
+) -> Questionnaire:
     items = {
         item: {key: float(np.mean(values)) for key, values in answers.items()}
         for item, answers in found.items()
