@@ -184,3 +184,12 @@ def test_a_change_of_a_cap_has_no_effect_far_away(jerk_max: float) -> None:
     np.testing.assert_allclose(changed[1500:], before[1500:], rtol=1e-12)
     np.testing.assert_allclose(changed[:200], before[:200], rtol=1e-12)
     assert np.all(changed[600:700] <= 30.0 * KMH)
+
+
+def test_a_valley_is_as_narrow_as_the_bend_allows() -> None:
+    """Its square of speed is the parabola whose second difference is the bend, bottom included."""
+    squares, bend = np.full(101, 400.0), np.full(101, 2.0)
+    squares[50] = 0.0
+    planner.round_valleys(view(squares), view(bend), np.inf, np.inf)
+    away = np.abs(np.arange(101.0) - 50.0)
+    np.testing.assert_array_equal(squares, np.minimum(away * away, 400.0))
