@@ -15,7 +15,17 @@ from typing import Final
 from . import __version__
 from .instance import ModelError
 
-COMMANDS: Final = ("route", "drive", "learn", "plot", "profiles", "study", "analyse", "export")
+COMMANDS: Final = (
+    "route",
+    "script",
+    "drive",
+    "learn",
+    "plot",
+    "profiles",
+    "study",
+    "analyse",
+    "export",
+)
 
 
 def build_parser() -> argparse.ArgumentParser:

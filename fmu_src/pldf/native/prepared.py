@@ -37,8 +37,17 @@ def prepared_script(columns: tuple[Any, ...]) -> bytes:
 
 def write_prepared_route(route: Route, path: Path) -> None:
     """Write the file of ``route``; ModelError if that is not possible."""
+    _write(path, prepared_route(route))
+
+
+def write_prepared_script(columns: tuple[Any, ...], path: Path) -> None:
+    """Write the file of a driver's script; ModelError if that is not possible."""
+    _write(path, prepared_script(columns))
+
+
+def _write(path: Path, data: bytes) -> None:
     try:
-        replace_file(path, prepared_route(route))
+        replace_file(path, data)
     except OSError as error:
         raise ModelError(f"{path}: cannot be written ({error.strerror})") from None
 
