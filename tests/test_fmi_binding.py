@@ -164,7 +164,7 @@ def test_date_follows_source_date_epoch(monkeypatch):
 
 
 def test_documentation_lists_every_variable_and_escapes_text():
-    page = document("Name", "a & b", "First.\n\n    Second <part>.", SIGNALS)
+    page = document("Name", "a & b", "First.\n\n    Second <part>.", SIGNALS, "<p>Anywhere.</p>")
     assert all(f"<code>{s.name}</code>" in page for s in SIGNALS)
     assert "Gain &lt;1&gt;" in page
     assert "<p>Second &lt;part&gt;.</p>" in page

@@ -25,7 +25,7 @@ def test_fmus_are_valid_and_complete(fmu_folder, name):
         f"binaries/linux64/{name}.so",
         f"binaries/win64/{name}.dll",
         "documentation/index.html",
-        "documentation/licenses/LICENSE.txt",
+        "documentation/licenses/license.txt",
         "documentation/licenses/pythonfmu.txt",
         "model.png",
         "modelDescription.xml",
@@ -50,7 +50,7 @@ def test_invalid_fmu_fails_the_build(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(build_fmu, "FMUS", {"Cart": cart_recipe()})
     monkeypatch.setattr(build_fmu, "validate_fmu", lambda _: ["something is wrong"])
     assert build_fmu.main(["--out", str(tmp_path)]) == 1
-    assert "Cart: not a valid FMU:\n  something is wrong" in capsys.readouterr().err
+    assert "Cart.fmu is not a valid FMU:\n  something is wrong" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 

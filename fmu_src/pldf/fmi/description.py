@@ -1,15 +1,16 @@
-"""The model description of an FMU, made from the model's table of signals.
+"""The model description of an FMI 2.0 FMU, made from the model's table of signals.
 
 Written for the importers that are strict: ``start`` on inputs and parameters and on nothing else,
 no ``initial`` on inputs, explicit variability, every unit with its base units, enumerations as
 types, every output among Outputs and InitialUnknowns, elements in the order of the XML schema.
+``packing/description3.py`` says the same in FMI 3.0.
 """
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Set
 from datetime import UTC, datetime
 from math import inf
 from typing import Final, NamedTuple
@@ -20,14 +21,14 @@ from ..kernel.signals import Enumeration, Signal
 from .units import DISPLAY, base_unit
 
 STEP_SIZE_S: Final = 0.01
-NO_GUID: Final = "{00000000-0000-0000-0000-000000000000}"  # replaced when the archive is written
+# Replaced when the archive is written.
+NO_GUID: Final = "{00000000-0000-0000-0000-000000000000}"
+NO_VERSION: Final = f"{__version__}+000000000000"
 _EPOCH_S: Final = 1767225600  # 2026-01-01: the same source gives the same bytes on every day
 _NAME: Final = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*")
 _NAME_MAX: Final = 55
 
 _CAPABILITIES: Final = {
-    # True as pythonfmu has it: Python and NumPy of the target machine do the work.
-    "needsExecutionTool": "true",
     "canHandleVariableCommunicationStepSize": "true",
     "canInterpolateInputs": "false",
     "maxOutputDerivativeOrder": "0",
@@ -41,26 +42,32 @@ _CAPABILITIES: Final = {
 
 
 class Model(NamedTuple):
-    """What the description says of a model; ``name`` is also the model identifier."""
+    """What the description says of a model.
+
+    Attributes:
+        name: also the model identifier.
+        about: one sentence.
+        signals: variables in the order of their value references.
+        stop_time_s: end of the default experiment.
+        native: machine code; else Python and NumPy of the target machine do the work.
+    """
 
     name: str
     about: str
     signals: tuple[Signal, ...]
     stop_time_s: float
+    native: bool = False
 
 
 def model_description(model: Model, log_categories: Mapping[str, str]) -> Element:
     """Return the root element; ValueError if a signal breaks a rule of FMI."""
-    _check(model.signals)
-    root = Element("fmiModelDescription", _header(model))
-    SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **_CAPABILITIES})
-    _units(root, sorted({s.unit for s in model.signals if s.unit}))
+    check(model.signals)
+    root = Element("fmiModelDescription", {"fmiVersion": "2.0", "guid": NO_GUID, **header(model)})
+    capabilities = {"needsExecutionTool": str(not model.native).lower(), **_CAPABILITIES}
+    SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **capabilities})
+    add_units(root, {s.unit for s in model.signals})
     _types(root, model.signals)
-    categories = SubElement(root, "LogCategories")
-    for name, text in log_categories.items():
-        SubElement(categories, "Category", {"name": name, "description": text})
-    times = {"startTime": "0", "stopTime": f"{model.stop_time_s:g}", "stepSize": f"{STEP_SIZE_S:g}"}
-    SubElement(root, "DefaultExperiment", times)
+    add_defaults(root, model, log_categories)
     variables = SubElement(root, "ModelVariables")
     for reference, signal in enumerate(model.signals):
         variables.append(_variable(signal, reference))
@@ -68,26 +75,27 @@ def model_description(model: Model, log_categories: Mapping[str, str]) -> Elemen
     return root
 
 
-def _header(model: Model) -> dict[str, str]:
+def header(model: Model) -> dict[str, str]:
+    """Return the attributes of the root element that all versions of FMI have."""
     moment = datetime.fromtimestamp(int(os.environ.get("SOURCE_DATE_EPOCH", _EPOCH_S)), UTC)
+    made_as = ", native" if model.native else " with pythonfmu"
     return {
-        "fmiVersion": "2.0",
         "modelName": model.name,
-        "guid": NO_GUID,
         "description": model.about,
-        "version": __version__,
+        "version": NO_VERSION,
         "license": "MIT",
-        "generationTool": f"Adaptive PLDF {__version__} with pythonfmu",
+        "generationTool": f"Adaptive PLDF {__version__}{made_as}",
         "generationDateAndTime": moment.strftime("%Y-%m-%dT%H:%M:%SZ"),
         "variableNamingConvention": "structured",
     }
 
 
-def _units(root: Element, units: Sequence[str]) -> None:
-    if not units:
+def add_units(root: Element, units: Set[str]) -> None:
+    """Define the units, with base and display units; the empty one is none."""
+    if not units - {""}:
         return
     definitions = SubElement(root, "UnitDefinitions")
-    for name in units:
+    for name in sorted(units - {""}):
         unit = SubElement(definitions, "Unit", {"name": name})
         base = base_unit(name)
         attributes = {symbol: str(power) for symbol, power in base.exponents.items()}
@@ -99,19 +107,45 @@ def _units(root: Element, units: Sequence[str]) -> None:
             SubElement(unit, "DisplayUnit", {"name": display, "factor": f"{factor:g}"})
 
 
+def add_defaults(root: Element, model: Model, log_categories: Mapping[str, str]) -> None:
+    """Name the log categories and the default experiment."""
+    categories = SubElement(root, "LogCategories")
+    for name, text in log_categories.items():
+        SubElement(categories, "Category", {"name": name, "description": text})
+    times = {"startTime": "0", "stopTime": f"{model.stop_time_s:g}", "stepSize": f"{STEP_SIZE_S:g}"}
+    SubElement(root, "DefaultExperiment", times)
+
+
+def enumerations(signals: tuple[Signal, ...]) -> dict[str, Enumeration]:
+    """Return the enumerations in use by name."""
+    return {s.enumeration.name: s.enumeration for s in signals if s.enumeration is not None}
+
+
 def _types(root: Element, signals: tuple[Signal, ...]) -> None:
-    found = {s.enumeration.name: s.enumeration for s in signals if s.enumeration is not None}
+    found = enumerations(signals)
     if not found:
         return
     definitions = SubElement(root, "TypeDefinitions")
     for name, enumeration in found.items():
         kind = SubElement(SubElement(definitions, "SimpleType", {"name": name}), "Enumeration")
-        for code, item in enumerate(enumeration.items):
-            SubElement(kind, "Item", {"name": item, "value": str(code)})
+        add_items(kind, enumeration)
+
+
+def add_items(kind: Element, enumeration: Enumeration) -> None:
+    """List the items of an enumeration with their codes."""
+    for code, item in enumerate(enumeration.items):
+        SubElement(kind, "Item", {"name": item, "value": str(code)})
 
 
 def _variable(signal: Signal, reference: int) -> Element:
-    attributes = {
+    variable = Element("ScalarVariable", attributes(signal, reference))
+    SubElement(variable, signal.kind, type_attributes(signal))
+    return variable
+
+
+def attributes(signal: Signal, reference: int) -> dict[str, str]:
+    """Return what is said of a variable of any type."""
+    said = {
         "name": signal.name,
         "valueReference": str(reference),
         "description": signal.description,
@@ -119,12 +153,10 @@ def _variable(signal: Signal, reference: int) -> Element:
         "variability": _variability(signal),
     }
     if signal.causality == "parameter":
-        attributes["initial"] = "exact"
+        said["initial"] = "exact"
     elif signal.causality != "input":
-        attributes["initial"] = "calculated"
-    variable = Element("ScalarVariable", attributes)
-    SubElement(variable, signal.kind, _type_attributes(signal))
-    return variable
+        said["initial"] = "calculated"
+    return said
 
 
 def _variability(signal: Signal) -> str:
@@ -133,20 +165,21 @@ def _variability(signal: Signal) -> str:
     return "continuous" if signal.kind == "Real" else "discrete"
 
 
-def _type_attributes(signal: Signal) -> dict[str, str]:
-    attributes = {}
+def type_attributes(signal: Signal) -> dict[str, str]:
+    """Return what is said of a variable of its type: enumeration, unit, range and start."""
+    said = {}
     if signal.enumeration is not None:
-        attributes["declaredType"] = signal.enumeration.name
+        said["declaredType"] = signal.enumeration.name
     if signal.unit:
-        attributes["unit"] = signal.unit
+        said["unit"] = signal.unit
         if signal.unit in DISPLAY:
-            attributes["displayUnit"] = DISPLAY[signal.unit][0]
+            said["displayUnit"] = DISPLAY[signal.unit][0]
     for name, bound in (("min", signal.low), ("max", signal.high)):
         if bound is not None:
-            attributes[name] = literal(signal, bound)
+            said[name] = literal(signal, bound)
     if signal.causality in ("parameter", "input"):
-        attributes["start"] = literal(signal, signal.start)
-    return attributes
+        said["start"] = literal(signal, signal.start)
+    return said
 
 
 def literal(signal: Signal, value: float | str) -> str:
@@ -172,7 +205,8 @@ def _structure(root: Element, signals: tuple[Signal, ...]) -> None:
             SubElement(unknowns, "Unknown", {"index": str(index), **held})
 
 
-def _check(signals: tuple[Signal, ...]) -> None:
+def check(signals: tuple[Signal, ...]) -> None:
+    """Raise ValueError if a signal breaks a rule of FMI."""
     types: dict[str, Enumeration] = {}
     names: set[str] = set()
     for signal in signals:

@@ -1,41 +1,46 @@
-"""One native FMU: compile the kernel, link it with the C runtime, pack the archive."""
+"""The archives of one native model, for FMI 2.0 and FMI 3.0, around the same libraries."""
 
 from __future__ import annotations
 
 import importlib
-import subprocess
-import sys
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib import metadata
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Final
+from typing import Any, Final, NamedTuple
 from xml.etree.ElementTree import Element, indent, tostring
 
-import fmpy  # type: ignore[import-untyped]
-
-from .. import __version__
-from ..fmi.description import NO_GUID, Model, model_description
-from ..fmi.packing.archive import DESCRIPTION, guid_of, write_archive
-from ..fmi.packing.documentation import document
+from ..fmi.description import Model, model_description
+from ..fmi.packing.archive import DESCRIPTION, guid_of, with_guid, with_version, write_archive
+from ..fmi.packing.description3 import model_description3
+from ..fmi.packing.documentation import as_machine_code, document
 from ..fmi.slave import LOG_CATEGORIES
 from ..kernel.signals import Signal
+from .linking import FLAGS, HEADERS, link, universal
 from .model import NativeModel
 from .objects import compile_objects
 from .table import header, signals, source
 from .targets import TARGETS
 
-DEFAULT_TARGETS: Final = tuple(TARGETS)
-HEADERS: Final = Path(str(fmpy.__file__)).parent / "c-code"
-_FLAGS: Final = (
-    "-std=c11", "-O2", "-ffp-contract=off", "-fwrapv", "-fvisibility=hidden",
-    "-Wall", "-Wextra", "-Werror", "-shared", "-s",
-)  # fmt: skip
 _TEXTS: Final = {
     "route_file": "Route prepared by 'pldf route FILE --export OUT.prepared', in place of route_id",
     "script_file": "Prepared script in place of the one of script_id",
 }
+
+
+class _Standard(NamedTuple):
+    """Where a version of FMI wants things; ``place`` is the folder below ``out``."""
+
+    version: str
+    place: str
+    icon: str
+    describe: Callable[[Model, Mapping[str, str]], Element]
+
+
+_FMI2: Final = _Standard("2.0", "", "model.png", model_description)
+_FMI3: Final = _Standard("3.0", "fmi3", "terminalsAndIcons/icon.png", model_description3)
 
 
 @dataclass(frozen=True)
@@ -49,6 +54,7 @@ class NativeRecipe:
         guide: what a user should know, for the documentation.
         icon: PNG shown by importers.
         license: licence text of the project.
+        version: shown by importers.
     """
 
     model: str
@@ -57,70 +63,123 @@ class NativeRecipe:
     guide: str
     icon: Path
     license: Path
+    version: str
 
 
-def build_native(recipe: NativeRecipe, targets: Sequence[str], out: Path) -> Path:
-    """Build one FMU into ``out`` and return its path; ValueError if that is not possible."""
+def build_native(
+    recipe: NativeRecipe, targets: Sequence[str], out: Path, tell: Callable[[str], None]
+) -> list[Path]:
+    """Build the archives of one model.
+
+    Args:
+        recipe: what to build.
+        targets: names in ``TARGETS``.
+        out: gets ``NAME.fmu`` (FMI 2.0, unless no target is known there) and ``fmi3/NAME.fmu``.
+        tell: is told what is being done.
+
+    Returns:
+        The paths of the archives.
+
+    Raises:
+        ValueError: numba refuses the kernel, or a library cannot be linked.
+    """
     module, _, name = recipe.model.partition(":")
     model: NativeModel = getattr(importlib.import_module(module), name)
+    tell(f"compile the kernel for {', '.join(targets)}")
     objects = compile_objects(recipe.model, targets)
-    members = dict(_members(recipe, model))
-    sources = {path.name: path.read_bytes() for path in sorted(recipe.runtime.glob("*.[ch]"))}
-    zig = metadata.version("ziglang").encode()
-    guid = guid_of({**members, **sources, **objects, "zig": zig})
-    members[DESCRIPTION] = members[DESCRIPTION].replace(NO_GUID.encode(), guid.encode())
-    with tempfile.TemporaryDirectory(prefix="native_") as folder:
-        Path(folder, "table.h").write_text(header(model), encoding="utf-8")
-        Path(folder, "table.c").write_text(source(model, guid), encoding="utf-8")
+    contents = [_contents(recipe, model, standard, targets) for standard in (_FMI2, _FMI3)]
+    inner = {**_inner(recipe, model), **objects}
+    guid, token = (guid_of({**members, **inner}) for members in contents)
+    libraries = {}
+    with tempfile.TemporaryDirectory(prefix="native_") as temporary:
+        folder = Path(temporary)
+        _write_tables(folder, header(model), source(model, guid, token))
         for target in targets:
-            Path(folder, f"{target}.o").write_bytes(objects[target])
-            library = link(Path(folder), recipe.runtime, target)
-            place = f"binaries/{TARGETS[target].fmi2}/{model.name}{TARGETS[target].suffix}"
-            members[place] = library.read_bytes()
-    out.mkdir(parents=True, exist_ok=True)
-    path = out / f"{model.name}.fmu"
+            tell(f"link {target}")
+            (folder / f"{target}.o").write_bytes(objects[target])
+            libraries[target] = link(folder, recipe.runtime, target, model.name, tell)
+    ready = (
+        (_FMI2, with_guid(contents[0], guid), _binaries2(model.name, libraries)),
+        (_FMI3, with_guid(contents[1], token), _binaries3(model.name, libraries)),
+    )
+    return [
+        _written(out / standard.place, model.name, {**members, **binaries})
+        for standard, members, binaries in ready
+        if binaries
+    ]
+
+
+def _written(folder: Path, name: str, members: Mapping[str, bytes]) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{name}.fmu"
     write_archive(path, members)
     return path
 
 
-def link(folder: Path, runtime: Path, target: str) -> Path:
-    """Link table and object in ``folder`` with the C runtime; return the library."""
-    library = folder / f"{target}{TARGETS[target].suffix}"
-    program = [sys.executable, "-m", "ziglang", "cc", "-target", TARGETS[target].linker, *_FLAGS]
-    program += [f"-I{HEADERS}", f"-I{runtime}", f"-I{folder}", "-o", str(library)]
-    if target.startswith("linux"):
-        program += ["-fPIC", "-Wl,-z,defs", "-Wl,--build-id=none", "-lm"]
-    inputs = [*sorted(runtime.glob("*.c")), folder / "table.c", folder / f"{target}.o"]
-    done = subprocess.run(
-        [*program, *map(str, inputs)], capture_output=True, text=True, check=False
-    )
-    if done.returncode != 0:
-        raise ValueError(f"linking for {target} failed:\n{done.stderr.strip()[-2000:]}")
-    return library
+def _write_tables(folder: Path, head: str, body: str) -> None:
+    (folder / "table.h").write_text(head, encoding="utf-8", newline="\n")
+    (folder / "table.c").write_text(body, encoding="utf-8", newline="\n")
 
 
-def _members(recipe: NativeRecipe, model: NativeModel) -> Iterator[tuple[str, bytes]]:
+def _binaries2(name: str, libraries: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Return the libraries by their place in an FMI 2.0 archive, those for macOS as one."""
+    folders: dict[str, list[str]] = {}
+    for target in libraries:
+        if TARGETS[target].fmi2:
+            folders.setdefault(TARGETS[target].fmi2, []).append(target)
+    found = {}
+    for folder, targets in folders.items():
+        parts = [libraries[target] for target in targets]
+        data = parts[0] if len(parts) == 1 else universal(parts)
+        found[f"binaries/{folder}/{name}{TARGETS[targets[0]].suffix}"] = data
+    return found
+
+
+def _binaries3(name: str, libraries: Mapping[str, bytes]) -> dict[str, bytes]:
+    return {f"binaries/{t}/{name}{TARGETS[t].suffix}": data for t, data in libraries.items()}
+
+
+def _inner(recipe: NativeRecipe, model: NativeModel) -> dict[str, bytes]:
+    """Return what else decides the bytes of a library, besides the objects."""
+    headers = [*HEADERS.glob("fmi[23]*.h")]
+    files = {path.name: path.read_bytes() for path in (*headers, *recipe.runtime.glob("*.[ch]"))}
+    tables = header(model) + source(model, "", "")
+    tool = f"ziglang {metadata.version('ziglang')} {' '.join(FLAGS)}"
+    return {**files, "table": tables.encode(), "tool": tool.encode()}
+
+
+def _contents(
+    recipe: NativeRecipe, model: NativeModel, standard: _Standard, targets: Sequence[str]
+) -> dict[str, bytes]:
+    """Return the archive without libraries, and without GUID or token."""
     shown = tuple(_as_native(signal) for signal in signals(model))
-    page = document(model.name, model.about, recipe.guide, shown)
-    yield DESCRIPTION, _description(model, shown)
-    yield "model.png", recipe.icon.read_bytes()
-    yield "documentation/index.html", page.encode()
-    yield "documentation/licenses/LICENSE.txt", recipe.license.read_bytes()
-    for place, data in recipe.resources.items():
-        yield f"resources/{place}", data
+    about = Model(model.name, model.about, shown, 300.0, native=True)
+    root = standard.describe(about, LOG_CATEGORIES)
+    indent(root)
+    description: Any = tostring(root, encoding="UTF-8", xml_declaration=True)
+    licenses = dict(_licenses(targets))
+    running = as_machine_code(standard.version, ", ".join(targets), tuple(licenses))
+    page = document(model.name, model.about, recipe.guide, shown, running)
+    members = {
+        DESCRIPTION: description,
+        standard.icon: recipe.icon.read_bytes(),
+        "documentation/index.html": page.encode(),
+        "documentation/licenses/license.txt": recipe.license.read_bytes(),
+        **{f"documentation/licenses/{name}.txt": text for name, text in licenses.items()},
+        **{f"resources/{place}": data for place, data in recipe.resources.items()},
+    }
+    return with_version(members, recipe.version)
 
 
 def _as_native(signal: Signal) -> Signal:
     return replace(signal, description=_TEXTS.get(signal.field, signal.description))
 
 
-def _description(model: NativeModel, shown: tuple[Signal, ...]) -> bytes:
-    about = Model(model.name, model.about, shown, 300.0)
-    root: Element = model_description(about, LOG_CATEGORIES)
-    root.set("generationTool", f"Adaptive PLDF {__version__}, native")
-    simulation = root.find("CoSimulation")
-    assert simulation is not None
-    simulation.set("needsExecutionTool", "false")
-    indent(root)
-    text: bytes = tostring(root, encoding="UTF-8", xml_declaration=True)
-    return text
+def _licenses(targets: Sequence[str]) -> Iterator[tuple[str, bytes]]:
+    """Yield name and licence of what zig links into a library."""
+    zig = find_spec("ziglang")
+    assert zig is not None and zig.submodule_search_locations
+    folder = Path(zig.submodule_search_locations[0])
+    yield "zig", (folder / "LICENSE").read_bytes()
+    if "x86_64-windows" in targets:
+        yield "mingw-w64", (folder / "lib" / "libc" / "mingw" / "COPYING").read_bytes()

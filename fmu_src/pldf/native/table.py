@@ -41,8 +41,8 @@ def header(model: NativeModel) -> str:
     )
 
 
-def source(model: NativeModel, guid: str) -> str:
-    """Return ``table.c``."""
+def source(model: NativeModel, guid: str, token: str) -> str:
+    """Return ``table.c``; ``guid`` belongs to FMI 2.0, ``token`` to FMI 3.0."""
     cells = [f.name for f in fields(model.record)]
     lines = ['#include "model.h"', "", "#include <math.h>", "#include <stddef.h>", ""]
     lines += [f"Entry model_{entry};" for entry in model.entries]
@@ -53,7 +53,8 @@ def source(model: NativeModel, guid: str) -> str:
     lines += ["};", "", "static const char *const watch_texts[] = {"]
     lines += [f"    {_text(text)}," for text in model.watch.texts]
     lines += ["};", "", "const Model model = {"]
-    lines += [f"    .{name} = {value}," for name, value in _members(model, cells, guid)]
+    lines += [f"    .guid = {_text(guid)},", f"    .token = {_text(token)},"]
+    lines += [f"    .{name} = {value}," for name, value in _members(model, cells)]
     return "\n".join([*lines, "};", ""])
 
 
@@ -74,9 +75,8 @@ def _variable(signal: Signal, model: NativeModel) -> Iterator[str]:
     yield _number(high)
 
 
-def _members(model: NativeModel, cells: list[str], guid: str) -> Iterator[tuple[str, str]]:
+def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
     texts = [f.name for f in fields(model.texts)]
-    yield "guid", _text(guid)
     yield "name", _text(model.name)
     yield "variables", "variables"
     yield "variable_count", str(len(signals(model)))

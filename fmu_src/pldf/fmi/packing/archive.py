@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
-from ..description import NO_GUID
+from ..description import NO_GUID, NO_VERSION
 
 DESCRIPTION: Final = "modelDescription.xml"
 _FIRST_DATE: Final = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip file can hold
@@ -21,12 +21,20 @@ def read_members(path: Path) -> dict[str, bytes]:
         return {info.filename: archive.read(info) for info in archive.infolist()}
 
 
-def with_guid(members: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return the members with the GUID in the model description made from all their bytes."""
-    guid = guid_of(members)
-    if members[DESCRIPTION].count(NO_GUID.encode()) != 1:
-        raise ValueError("the model description must hold the placeholder of the GUID once")
-    text = members[DESCRIPTION].replace(NO_GUID.encode(), guid.encode())
+def with_version(members: Mapping[str, bytes], version: str) -> dict[str, bytes]:
+    """Return the members with this version in the model description."""
+    return _filled_in(members, NO_VERSION, version)
+
+
+def with_guid(members: Mapping[str, bytes], guid: str = "") -> dict[str, bytes]:
+    """Return the members with this GUID in the model description, or one made from their bytes."""
+    return _filled_in(members, NO_GUID, guid or guid_of(members))
+
+
+def _filled_in(members: Mapping[str, bytes], placeholder: str, value: str) -> dict[str, bytes]:
+    if members[DESCRIPTION].count(placeholder.encode()) != 1:
+        raise ValueError(f"the model description must hold the placeholder {placeholder} once")
+    text = members[DESCRIPTION].replace(placeholder.encode(), value.encode())
     return {**members, DESCRIPTION: text}
 
 

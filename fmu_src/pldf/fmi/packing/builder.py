@@ -14,8 +14,8 @@ from types import ModuleType
 from pythonfmu import FmuBuilder  # type: ignore[import-untyped]
 
 from ..slave import ModelSlave
-from .archive import read_members, with_guid, write_archive
-from .documentation import document
+from .archive import read_members, with_guid, with_version, write_archive
+from .documentation import IN_PYTHON, document
 from .isolate import copy_file, copy_package, digest, packed_files
 
 
@@ -36,12 +36,14 @@ class Recipe:
         packages: they may import each other by name.
         icon: PNG shown by importers.
         license: licence text of the project.
+        version: shown by importers.
     """
 
     script: Path
     packages: tuple[Package, ...]
     icon: Path
     license: Path
+    version: str
 
 
 def build(recipe: Recipe, out: Path) -> Path:
@@ -63,7 +65,7 @@ def build(recipe: Recipe, out: Path) -> Path:
             raw = FmuBuilder.build_FMU(script, dest=temporary, project_files=folders)
             members = {**read_members(raw), **_extras(recipe, slave)}
     path = out / f"{type(slave).__name__}.fmu"
-    write_archive(path, with_guid(members))
+    write_archive(path, with_guid(with_version(members, recipe.version)))
     return path
 
 
@@ -86,11 +88,12 @@ def slave_of(module: str) -> ModelSlave:
 
 
 def _extras(recipe: Recipe, slave: ModelSlave) -> dict[str, bytes]:
-    page = document(type(slave).__name__, slave.about, slave.__doc__ or "", slave.signals)
+    name, guide = type(slave).__name__, slave.__doc__ or ""
+    page = document(name, slave.about, guide, slave.signals, IN_PYTHON)
     return {
         "model.png": recipe.icon.read_bytes(),
         "documentation/index.html": page.encode(),
-        "documentation/licenses/LICENSE.txt": recipe.license.read_bytes(),
+        "documentation/licenses/license.txt": recipe.license.read_bytes(),
         "documentation/licenses/pythonfmu.txt": _license_of("pythonfmu"),
     }
 

@@ -40,19 +40,39 @@ $outputs
 <p>Set before the initialization ends; a value outside its range is refused with a message.</p>
 $parameters
 <h2>Running it</h2>
-<p>FMI 2.0 co-simulation, default step 10 ms, any step from 0.1 ms to 100 ms. The FMU runs in
-Python: the machine needs Python 3.11 or newer with NumPy on its path. On Linux the simulator itself
-has to be a Python program; on Windows any importer with access to a Python installation will do.
-Switch the importer's logging on to see the messages of the model.</p>
-<p>Licences: <a href="licenses/LICENSE.txt">this FMU</a>,
-<a href="licenses/pythonfmu.txt">pythonfmu</a>.</p>
+$running
 </body>
 </html>
 """)
+_STEPS: Final = "co-simulation, default step 10 ms, any step from 0.1 ms to 100 ms."
+_LOGGING: Final = "Switch the importer's logging on to see the messages of the model."
+IN_PYTHON: Final = f"""<p>FMI 2.0 {_STEPS} The FMU runs in
+Python: the machine needs Python 3.11 or newer with NumPy on its path. On Linux the simulator itself
+has to be a Python program; on Windows any importer with access to a Python installation will do.
+{_LOGGING}</p>
+<p>Licences: <a href="licenses/license.txt">this FMU</a>,
+<a href="licenses/pythonfmu.txt">pythonfmu</a>.</p>"""
 
 
-def document(name: str, about: str, text: str, signals: Sequence[Signal]) -> str:
-    """Return the page; ``text`` is plain paragraphs separated by blank lines."""
+def as_machine_code(fmi: str, platforms: str, licenses: Sequence[str]) -> str:
+    """Return how a native FMU runs; ``licenses`` names what else is linked into it."""
+    others = "".join(f', <a href="licenses/{name}.txt">{name}</a>' for name in licenses)
+    return f"""<p>FMI {fmi} {_STEPS} Machine code
+for {platforms}: nothing else has to be installed. Roads and scripts of your own are prepared files.
+{_LOGGING}</p>
+<p>Licences: <a href="licenses/license.txt">this FMU</a>{others}.</p>"""
+
+
+def document(name: str, about: str, text: str, signals: Sequence[Signal], running: str) -> str:
+    """Return the page.
+
+    Args:
+        name: of the model.
+        about: one sentence.
+        text: plain paragraphs separated by blank lines.
+        signals: the variables.
+        running: HTML that says what the FMU needs.
+    """
     paragraphs = [escape(part) for part in cleandoc(text).split("\n\n") if part]
     tables = {
         f"{causality}s": _table([s for s in signals if s.causality == causality])
@@ -62,6 +82,7 @@ def document(name: str, about: str, text: str, signals: Sequence[Signal]) -> str
         name=escape(name),
         about=escape(about),
         text="\n".join(f"<p>{part}</p>" for part in paragraphs),
+        running=running,
         **tables,
     )
 
