@@ -1,36 +1,54 @@
 /* As pldf/disk.py: nobody ever sees or leaves half of a file; the lock vanishes with its holder. */
 #ifdef _WIN32
 #define WIN32_LEAN_AND_MEAN
+#include <io.h>
+#include <sys/locking.h>
 #include <windows.h>
 #else
 #define _GNU_SOURCE
-#include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 #endif
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "disk.h"
 
-enum { LOCK_POLL_MS = 10, LOCK_POLLS = 1000 };
+enum { LOCK_POLL_MS = 10, LOCK_POLLS = 1000, BUSY_POLL_MS = 20, BUSY_POLLS = 100, PART = 1 << 30 };
+static const int64_t FILE_MAX = (int64_t)1 << 32;
 
 static bool fail(char *why, const char *reason) {
     snprintf(why, REASON_SIZE, "%s", reason);
     return false;
 }
 
-#ifdef _WIN32
+#ifdef _WIN32 /* what POSIX calls otherwise, with paths in UTF-16 */
 
+#define O_RDONLY _O_RDONLY
+#define O_NEW (_O_WRONLY | _O_CREAT | _O_EXCL)
+#define O_LOCK (_O_RDWR | _O_CREAT)
+#define read(file, to, size) _read(file, to, (unsigned)(size))
+#define write(file, from, size) _write(file, from, (unsigned)(size))
+#define close _close
+#define fsync _commit
+#define fstat _fstat64
+typedef struct _stat64 Status;
 typedef wchar_t Wide[PATH_SIZE];
+enum { BUSY_WHILE_OPEN = 1 }; /* a file is refused for the moment in which somebody else has it */
 
 static const wchar_t *wide(const char *path, Wide out) {
     if (!MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, out, PATH_SIZE)) out[0] = 0;
     return out;
+}
+
+static bool narrow(DWORD length, const wchar_t *found, char *out) {
+    return length > 0 && length < PATH_SIZE &&
+           WideCharToMultiByte(CP_UTF8, 0, found, -1, out, PATH_SIZE, NULL, NULL) > 0;
 }
 
 static bool fail_now(char *why) {
@@ -38,72 +56,23 @@ static bool fail_now(char *why) {
     return false;
 }
 
-static HANDLE open_file(const char *path, DWORD access, DWORD how) {
+static int open_path(const char *path, int flags) {
     Wide w;
-    return CreateFileW(wide(path, w), access, FILE_SHARE_READ | FILE_SHARE_WRITE, NULL, how,
-                       FILE_ATTRIBUTE_NORMAL, NULL);
+    return _wopen(wide(path, w), flags | _O_BINARY | _O_NOINHERIT, _S_IREAD | _S_IWRITE);
 }
 
-/* A file is refused for the moment in which somebody else has it open. */
-static bool is_busy(int tries) {
-    DWORD error = GetLastError();
-    if ((error != ERROR_SHARING_VIOLATION && error != ERROR_ACCESS_DENIED) || tries >= 100)
-        return false;
-    Sleep(20);
-    return true;
-}
-
-ReadResult disk_read(const char *path, int64_t most, uint8_t **bytes, int64_t *size, char *why) {
-    HANDLE file;
-    LARGE_INTEGER length;
-    for (int tries = 0; (file = open_file(path, GENERIC_READ, OPEN_EXISTING)) == INVALID_HANDLE_VALUE;
-         tries++) {
-        DWORD error = GetLastError();
-        if (error == ERROR_FILE_NOT_FOUND || error == ERROR_PATH_NOT_FOUND) return READ_ABSENT;
-        if (disk_is_folder(path) || !is_busy(tries)) return fail_now(why), READ_FAILED;
-    }
-    *bytes = NULL;
-    bool good = GetFileSizeEx(file, &length) && length.QuadPart <= most &&
-                (*bytes = malloc((size_t)length.QuadPart + 1)) != NULL;
-    *size = good ? length.QuadPart : 0;
-    for (int64_t at = 0; good && at < *size;) {
-        DWORD got = 0, part = *size - at < (1 << 30) ? (DWORD)(*size - at) : 1 << 30;
-        good = ReadFile(file, *bytes + at, part, &got, NULL) && got > 0;
-        at += got;
-    }
-    CloseHandle(file);
-    if (good) return READ_DONE;
-    free(*bytes);
-    return fail(why, "too long, or it does not fit into memory"), READ_FAILED;
-}
-
-bool disk_rename(const char *from, const char *to, char *why) {
+static bool move(const char *from, const char *to) {
     Wide a, b;
-    wide(from, a), wide(to, b);
-    for (int tries = 0; !MoveFileExW(a, b, MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH);
-         tries++)
-        if (!is_busy(tries)) return fail_now(why);
-    return true;
+    if (MoveFileExW(wide(from, a), wide(to, b), MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH))
+        return true;
+    bool busy = GetLastError() == ERROR_SHARING_VIOLATION || GetLastError() == ERROR_ACCESS_DENIED;
+    errno = busy ? EACCES : EIO;
+    return false;
 }
 
 static void remove_file(const char *path) {
     Wide w;
-    DeleteFileW(wide(path, w));
-}
-
-static bool write_new(const char *path, const uint8_t *bytes, int64_t size, char *why) {
-    HANDLE file = open_file(path, GENERIC_WRITE, CREATE_NEW);
-    if (file == INVALID_HANDLE_VALUE) return fail_now(why);
-    bool good = true;
-    for (int64_t at = 0; good && at < size;) {
-        DWORD done = 0, part = size - at < (1 << 30) ? (DWORD)(size - at) : 1 << 30;
-        good = WriteFile(file, bytes + at, part, &done, NULL) && done > 0;
-        at += done;
-    }
-    good = good && FlushFileBuffers(file);
-    if (!good) fail_now(why);
-    CloseHandle(file);
-    return good;
+    _wunlink(wide(path, w));
 }
 
 bool disk_exists(const char *path) {
@@ -122,102 +91,59 @@ static bool make_one_folder(const char *path, char *why) {
     return CreateDirectoryW(wide(path, w), NULL) || disk_is_folder(path) || fail_now(why);
 }
 
-static bool try_lock(Lock *lock, char *why) {
-    HANDLE file = open_file(lock->path, GENERIC_READ | GENERIC_WRITE, OPEN_ALWAYS);
-    if (file == INVALID_HANDLE_VALUE)
-        return GetLastError() != ERROR_ACCESS_DENIED ? fail_now(why) : false; /* being removed */
-    if (LockFile(file, 0, 0, 1, 0)) return lock->handle = (intptr_t)file, true;
-    CloseHandle(file);
-    return false;
-}
-
-void disk_unlock(Lock *lock) {
-    CloseHandle((HANDLE)lock->handle);
-    remove_file(lock->path); /* refused while others have it open: they reuse it */
+static bool take_lock(int file, const char *path) {
+    (void)path;
+    return _locking(file, _LK_NBLCK, 1) == 0;
 }
 
 static void wait_ms(int ms) { Sleep((DWORD)ms); }
 
 bool disk_absolute(const char *path, char *absolute) {
     Wide w, full;
-    DWORD length = GetFullPathNameW(wide(path, w), PATH_SIZE, full, NULL);
-    return length > 0 && length < PATH_SIZE &&
-           WideCharToMultiByte(CP_UTF8, 0, full, -1, absolute, PATH_SIZE, NULL, NULL) > 0;
+    return narrow(GetFullPathNameW(wide(path, w), PATH_SIZE, full, NULL), full, absolute);
 }
 
 bool disk_environment(const char *name, char *value) {
     Wide w, found;
-    DWORD length = GetEnvironmentVariableW(wide(name, w), found, PATH_SIZE);
-    return length > 0 && length < PATH_SIZE &&
-           WideCharToMultiByte(CP_UTF8, 0, found, -1, value, PATH_SIZE, NULL, NULL) > 0;
+    return narrow(GetEnvironmentVariableW(wide(name, w), found, PATH_SIZE), found, value);
 }
 
 #else
 
+#define O_NEW (O_WRONLY | O_CREAT | O_EXCL)
+#define O_LOCK (O_RDWR | O_CREAT)
+typedef struct stat Status;
+enum { BUSY_WHILE_OPEN = 0 };
+
 static bool fail_now(char *why) { return fail(why, strerror(errno)); }
 
-ReadResult disk_read(const char *path, int64_t most, uint8_t **bytes, int64_t *size, char *why) {
-    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe must not block */
-    if (file < 0) return errno == ENOENT ? READ_ABSENT : (fail_now(why), READ_FAILED);
-    struct stat status;
-    *bytes = NULL;
-    bool good = fstat(file, &status) == 0 && S_ISREG(status.st_mode);
-    if (!good) fail(why, "not a regular file");
-    if (good && (status.st_size > most || !(*bytes = malloc((size_t)status.st_size + 1))))
-        good = fail(why, "too long, or it does not fit into memory");
-    *size = good ? status.st_size : 0;
-    for (int64_t at = 0; good && at < *size;) {
-        ssize_t got = read(file, *bytes + at, (size_t)(*size - at));
-        if (got <= 0 && !(got < 0 && errno == EINTR)) good = fail(why, "it ends while it is read");
-        at += got > 0 ? got : 0;
-    }
-    close(file);
-    if (!good) free(*bytes);
-    return good ? READ_DONE : READ_FAILED;
+static int open_path(const char *path, int flags) {
+    return open(path, flags | O_CLOEXEC | O_NONBLOCK, 0666); /* a pipe must not block */
 }
 
-/* Makes a new name last through a power cut, where the system can do that for folders. */
-static void sync_folder_of(const char *path) {
+/* Makes the new name last through a power cut, where the system can do that for folders. */
+static bool move(const char *from, const char *to) {
     char folder[PATH_SIZE];
-    snprintf(folder, sizeof folder, "%s", path);
+    if (rename(from, to) != 0) return false;
+    snprintf(folder, sizeof folder, "%s", to);
     char *end = strrchr(folder, '/');
-    if (!end) return;
-    *end = 0;
-    int file = open(*folder ? folder : "/", O_RDONLY | O_CLOEXEC);
-    if (file < 0) return;
+    if (end) end[end == folder] = 0;
+    int file = end ? open_path(folder, O_RDONLY) : -1;
+    if (file < 0) return true;
     fsync(file);
     close(file);
-}
-
-bool disk_rename(const char *from, const char *to, char *why) {
-    if (rename(from, to) != 0) return fail_now(why);
-    sync_folder_of(to);
     return true;
 }
 
 static void remove_file(const char *path) { unlink(path); }
 
-static bool write_new(const char *path, const uint8_t *bytes, int64_t size, char *why) {
-    int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file < 0) return fail_now(why);
-    bool good = true;
-    for (int64_t at = 0; good && at < size;) {
-        ssize_t done = write(file, bytes + at, (size_t)(size - at));
-        if (done < 0 && errno != EINTR) good = fail_now(why);
-        at += done > 0 ? done : 0;
-    }
-    if (good && fsync(file) != 0) good = fail_now(why);
-    close(file);
-    return good;
-}
-
 bool disk_exists(const char *path) {
-    struct stat status;
+    Status status;
     return lstat(path, &status) == 0;
 }
 
 bool disk_is_folder(const char *path) {
-    struct stat status;
+    Status status;
     return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
@@ -226,23 +152,14 @@ static bool make_one_folder(const char *path, char *why) {
 }
 
 /* Valid only if it still is the file of that name: its last holder may have removed it. */
-static bool try_lock(Lock *lock, char *why) {
-    int file = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (file < 0) return fail_now(why);
-    struct stat ours, there;
-    if (flock(file, LOCK_EX | LOCK_NB) != 0) {
-        if (errno != EAGAIN && errno != EACCES && errno != EDEADLK) fail_now(why);
-    } else if (fstat(file, &ours) == 0 && stat(lock->path, &there) == 0 &&
-               ours.st_ino == there.st_ino && ours.st_dev == there.st_dev) {
-        return lock->handle = file, true;
-    }
-    close(file);
+static bool take_lock(int file, const char *path) {
+    Status ours, there;
+    if (flock(file, LOCK_EX | LOCK_NB) != 0) return false;
+    if (fstat(file, &ours) == 0 && stat(path, &there) == 0 && ours.st_ino == there.st_ino &&
+        ours.st_dev == there.st_dev)
+        return true;
+    errno = EAGAIN;
     return false;
-}
-
-void disk_unlock(Lock *lock) {
-    remove_file(lock->path); /* while it is locked: who waits for it sees that it is gone */
-    close((int)lock->handle);
 }
 
 static void wait_ms(int ms) {
@@ -253,8 +170,7 @@ static void wait_ms(int ms) {
 bool disk_absolute(const char *path, char *absolute) {
     char here[PATH_SIZE] = "";
     if (path[0] != '/' && !getcwd(here, sizeof here)) return false;
-    int length = snprintf(absolute, PATH_SIZE, "%s%s%s", here, *here ? "/" : "", path);
-    return length < PATH_SIZE;
+    return snprintf(absolute, PATH_SIZE, "%s%s%s", here, *here ? "/" : "", path) < PATH_SIZE;
 }
 
 bool disk_environment(const char *name, char *value) {
@@ -263,6 +179,62 @@ bool disk_environment(const char *name, char *value) {
 }
 
 #endif
+
+static bool is_busy(const char *path, int *polls) {
+    if (!BUSY_WHILE_OPEN || errno != EACCES || ++*polls > BUSY_POLLS || disk_is_folder(path))
+        return false;
+    wait_ms(BUSY_POLL_MS);
+    return true;
+}
+
+static bool read_all(int file, uint8_t **bytes, int64_t *size, char *why) {
+    Status status;
+    if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return fail(why, "not a regular file");
+    *size = status.st_size;
+    if (*size > FILE_MAX || !(*bytes = malloc((size_t)*size + 1)))
+        return fail(why, "too long, or it does not fit into memory");
+    for (int64_t at = 0; at < *size;) {
+        int64_t got = read(file, *bytes + at, *size - at < PART ? *size - at : PART);
+        if (got > 0) at += got;
+        else if (got == 0 || errno != EINTR) return fail(why, "it ends while it is read");
+    }
+    return true;
+}
+
+ReadResult disk_read(const char *path, uint8_t **bytes, int64_t *size, char *why) {
+    int file, polls = 0;
+    *bytes = NULL;
+    while ((file = open_path(path, O_RDONLY)) < 0) {
+        if (errno == ENOENT) return READ_ABSENT;
+        if (!is_busy(path, &polls)) return fail_now(why), READ_FAILED;
+    }
+    bool good = read_all(file, bytes, size, why);
+    close(file);
+    if (good) return READ_DONE;
+    free(*bytes);
+    *bytes = NULL;
+    return READ_FAILED;
+}
+
+bool disk_rename(const char *from, const char *to, char *why) {
+    for (int polls = 0; !move(from, to);)
+        if (!is_busy(to, &polls)) return fail_now(why);
+    return true;
+}
+
+static bool write_new(const char *path, const uint8_t *bytes, int64_t size, char *why) {
+    int file = open_path(path, O_NEW);
+    if (file < 0) return fail_now(why);
+    bool good = true;
+    for (int64_t at = 0; good && at < size;) {
+        int64_t done = write(file, bytes + at, size - at < PART ? size - at : PART);
+        if (done > 0) at += done;
+        else if (errno != EINTR) good = fail_now(why);
+    }
+    if (good && fsync(file) != 0) good = fail_now(why);
+    close(file);
+    return good;
+}
 
 bool disk_replace(const char *path, const uint8_t *bytes, int64_t size, char *why) {
     char temporary[PATH_SIZE + 8];
@@ -274,8 +246,8 @@ bool disk_replace(const char *path, const uint8_t *bytes, int64_t size, char *wh
 }
 
 bool disk_make_folder(const char *path, char *why) {
-    if (disk_is_folder(path)) return true;
     char part[PATH_SIZE];
+    if (disk_is_folder(path)) return true;
     snprintf(part, sizeof part, "%s", path);
     for (char *at = part + 1; *at; at++) {
         if (*at != '/' && *at != '\\') continue;
@@ -287,6 +259,15 @@ bool disk_make_folder(const char *path, char *why) {
     return make_one_folder(part, why);
 }
 
+static bool try_lock(Lock *lock, char *why) {
+    lock->file = open_path(lock->path, O_LOCK);
+    if (lock->file < 0) return BUSY_WHILE_OPEN && errno == EACCES ? false : fail_now(why);
+    if (take_lock(lock->file, lock->path)) return true;
+    if (errno != EAGAIN && errno != EACCES && errno != EDEADLK) fail_now(why);
+    close(lock->file);
+    return false;
+}
+
 bool disk_lock(const char *folder, Lock *lock, char *why) {
     snprintf(lock->path, sizeof lock->path, "%s/pldf-store.lock", folder);
     why[0] = 0;
@@ -296,4 +277,10 @@ bool disk_lock(const char *folder, Lock *lock, char *why) {
         wait_ms(LOCK_POLL_MS);
     }
     return fail(why, "held by another process for 10 s");
+}
+
+void disk_unlock(Lock *lock) {
+    if (!BUSY_WHILE_OPEN) remove_file(lock->path); /* who waits for it sees that it is gone */
+    close(lock->file);
+    if (BUSY_WHILE_OPEN) remove_file(lock->path); /* refused if another has it open, and uses it */
 }

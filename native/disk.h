@@ -9,12 +9,12 @@
 enum { PATH_SIZE = 4096, REASON_SIZE = 160 };
 typedef enum { READ_DONE, READ_ABSENT, READ_FAILED } ReadResult;
 typedef struct {
-    intptr_t handle;
+    int file;
     char path[PATH_SIZE + 32];
 } Lock;
 
-/* Whole regular file of at most `most` bytes, to be freed by the caller. */
-ReadResult disk_read(const char *path, int64_t most, uint8_t **bytes, int64_t *size, char *why);
+/* Whole regular file of at most 4 GiB, to be freed by the caller; NULL unless it is done. */
+ReadResult disk_read(const char *path, uint8_t **bytes, int64_t *size, char *why);
 bool disk_replace(const char *path, const uint8_t *bytes, int64_t size, char *why);
 bool disk_rename(const char *from, const char *to, char *why);
 bool disk_exists(const char *path);

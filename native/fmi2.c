@@ -1,265 +1,161 @@
-/* FMI 2.0 for co-simulation: arguments checked, then handed to the session. */
-#include <stdio.h>
-#include <stdlib.h>
+/* FMI 2.0 for co-simulation: each call is handed to the session, which is FMI's component. */
+#include <math.h>
 #include <string.h>
 
 #include "fmi2Functions.h"
 #include "session.h"
 
-typedef struct {
-    Session *session;
-    fmi2CallbackFunctions callbacks;
-    bool events; /* tell INFO messages too */
-    char name[];
-} Instance;
-
-enum { AT_START = 1 << INSTANTIATED, IN_INITIALIZATION = 1 << INITIALIZING, AT_STEP = 1 << STEPPING };
-
-static void tell(void *host, Level level, const char *text) {
-    static const char *const categories[] = {"logEvents", "logStatusWarning", "logStatusError"};
-    static const fmi2Status statuses[] = {fmi2OK, fmi2Warning, fmi2Error};
-    Instance *it = host;
-    char escaped[2 * MESSAGE_SIZE], *to = escaped; /* importers may print it with printf */
-    if (!it->callbacks.logger || (level == INFO && !it->events)) return;
-    for (; *text; *to++ = *text++)
-        if (*text == '%') *to++ = '%';
-    *to = 0;
-    it->callbacks.logger(it->callbacks.componentEnvironment, it->name, statuses[level],
-                         categories[level], escaped);
-}
+#pragma GCC diagnostic ignored "-Wunused-parameter" /* the standard prescribes them */
 
 static fmi2Status answer(bool good) { return good ? fmi2OK : fmi2Error; }
 
-static bool refused(Instance *it, const char *call) {
-    if (it) session_complain(it->session, ERROR_LEVEL, "%s is not supported", call);
-    return false;
+static void tell(const Session *s, Level level, const char *category, const char *text) {
+    fmi2CallbackLogger logger = (fmi2CallbackLogger)s->importer.logger;
+    logger(s->importer.environment, s->name, (fmi2Status)level, category, text);
 }
 
 const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 const char *fmi2GetVersion(void) { return fmi2Version; }
 
-static bool is_event_category(const char *name) {
-    return name && (!strcmp(name, "logEvents") || !strcmp(name, "logAll"));
-}
-
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count,
-                               const fmi2String names[]) {
-    Instance *it = c;
-    if (!it || (count && !names)) return fmi2Error;
-    it->events = on && count == 0;
-    for (size_t i = 0; i < count; i++) it->events = it->events || (on && is_event_category(names[i]));
-    return fmi2OK;
+                               const fmi2String categories[]) {
+    return answer(session_log(c, on, count, categories));
 }
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
                               const fmi2CallbackFunctions *callbacks, fmi2Boolean visible,
                               fmi2Boolean logging) {
-    (void)visible;
-    if (!name || !callbacks) return NULL;
-    size_t length = strlen(name) + 1;
-    Instance *it = calloc(1, sizeof *it + length);
-    if (!it) return NULL;
-    memcpy(it->name, name, length);
-    it->callbacks = *callbacks;
-    it->events = logging;
+    if (!callbacks) return NULL;
+    Importer importer = {tell, (void (*)(void))callbacks->logger, callbacks->componentEnvironment,
+                         "%#"}; /* may be printed with printf; #r1# is a variable */
     const char *problem = NULL;
     if (type != fmi2CoSimulation) problem = "only co-simulation is possible";
     if (!guid || strcmp(guid, model.guid) != 0) problem = "the GUID is that of another FMU";
-    if (!*name) problem = "the instance needs a name";
-    if (problem) tell(it, ERROR_LEVEL, problem);
-    else if ((it->session = session_new(resources, tell, it)) != NULL) return it;
-    free(it);
-    return NULL;
+    return session_new(name, resources, logging, problem, &importer);
 }
 
-void fmi2FreeInstance(fmi2Component c) {
-    if (!c) return;
-    session_free(((Instance *)c)->session);
-    free(c);
-}
+void fmi2FreeInstance(fmi2Component c) { session_free(c); }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_given, fmi2Real tolerance,
                                fmi2Real start, fmi2Boolean stop_given, fmi2Real stop) {
-    (void)tolerance_given, (void)tolerance, (void)stop_given, (void)stop;
-    if (!c) return fmi2Error;
-    Session *s = ((Instance *)c)->session;
-    return answer(session_allows(s, __func__, AT_START) && session_set_start(s, start));
+    return answer(session_allows(c, __func__, AT_START) && session_set_times(c, start, INFINITY));
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-    if (!c) return fmi2Error;
-    Session *s = ((Instance *)c)->session;
-    if (!session_allows(s, __func__, AT_START)) return fmi2Error;
-    s->state.phase = INITIALIZING;
-    return fmi2OK;
+    return answer(session_allows(c, __func__, AT_START) && session_enter_initialization(c));
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-    if (!c) return fmi2Error;
-    Session *s = ((Instance *)c)->session;
-    return answer(session_allows(s, __func__, IN_INITIALIZATION) && session_exit_initialization(s));
+    return answer(session_allows(c, __func__, IN_INITIALIZATION) && session_exit_initialization(c));
 }
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_rollback) {
-    (void)no_rollback;
-    if (!c) return fmi2Error;
-    Session *s = ((Instance *)c)->session;
-    return answer(session_allows(s, __func__, AT_STEP) && session_step(s, time, step));
+    return answer(session_allows(c, __func__, AT_STEP) && session_step(c, time, step));
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
-    if (!c) return fmi2Error;
-    Session *s = ((Instance *)c)->session;
-    if (!session_allows(s, __func__, AT_STEP)) return fmi2Error;
-    session_terminate(s);
-    return fmi2OK;
+    return answer(session_allows(c, __func__, AT_STEP) && session_terminate(c));
 }
 
-fmi2Status fmi2Reset(fmi2Component c) {
-    if (!c) return fmi2Error;
-    session_reset(((Instance *)c)->session);
-    return fmi2OK;
-}
+fmi2Status fmi2Reset(fmi2Component c) { return answer(session_reset(c)); }
 
 /* Values */
 
-static bool can(fmi2Component c, const void *references, size_t count, const void *values) {
-    return c && (count == 0 || (references && values));
-}
+#define VALUES(TYPE) \
+    fmi2Component c, const fmi2ValueReference references[], size_t count, TYPE values[]
 
-#define GET(TYPE, KINDS, READ)                                                                     \
-    fmi2Status fmi2Get##TYPE(fmi2Component c, const fmi2ValueReference references[], size_t count, \
-                             fmi2##TYPE values[]) {                                                \
-        if (!can(c, references, count, values)) return fmi2Error;                                  \
-        Session *s = ((Instance *)c)->session;                                                     \
-        if (!session_before_get(s, references, count, KINDS)) return fmi2Error;                    \
-        for (size_t i = 0; i < count; i++) {                                                       \
-            int32_t cell = model.variables[references[i]].cell;                                    \
-            values[i] = READ;                                                                      \
-        }                                                                                          \
-        return fmi2OK;                                                                             \
+#define GET(TYPE, KINDS, READ)                                                   \
+    fmi2Status fmi2Get##TYPE(VALUES(fmi2##TYPE)) {                               \
+        Session *s = c;                                                          \
+        bool good = session_can_get(s, references, count, values, count, KINDS); \
+        for (size_t i = 0; good && i < count; i++) values[i] = READ;             \
+        return answer(good);                                                     \
     }
 
-#define SET(TYPE, KINDS, WRITE)                                                                    \
-    fmi2Status fmi2Set##TYPE(fmi2Component c, const fmi2ValueReference references[], size_t count, \
-                             const fmi2##TYPE values[]) {                                          \
-        if (!can(c, references, count, values)) return fmi2Error;                                  \
-        Session *s = ((Instance *)c)->session;                                                     \
-        if (!session_before_set(s, references, count, KINDS)) return fmi2Error;                    \
-        for (size_t i = 0; i < count; i++) {                                                       \
-            const Variable *v = &model.variables[references[i]];                                   \
-            WRITE;                                                                                 \
-        }                                                                                          \
-        return fmi2OK;                                                                             \
+#define SET(TYPE, KINDS, WRITE)                                                  \
+    fmi2Status fmi2Set##TYPE(VALUES(const fmi2##TYPE)) {                         \
+        Session *s = c;                                                          \
+        bool good = session_can_set(s, references, count, values, count, KINDS); \
+        for (size_t i = 0; good && i < count; i++) WRITE;                        \
+        return answer(good);                                                     \
     }
 
-GET(Real, KIND_REAL, s->state.record[cell].real)
-GET(Integer, KIND_INTEGER | KIND_ENUMERATION, (fmi2Integer)s->state.record[cell].integer)
-GET(Boolean, KIND_BOOLEAN, (fmi2Boolean)s->state.record[cell].integer)
-GET(String, KIND_STRING, s->state.texts[cell])
-SET(Real, KIND_REAL, s->state.record[v->cell].real = values[i])
-SET(Integer, KIND_INTEGER | KIND_ENUMERATION, s->state.record[v->cell].integer = values[i])
-SET(Boolean, KIND_BOOLEAN, s->state.record[v->cell].integer = values[i] != fmi2False)
-SET(String, KIND_STRING, if (!session_set_text(s, v, values[i])) return fmi2Error)
+GET(Real, KIND_REAL, CELL(i).real)
+GET(Integer, KIND_INTEGER | KIND_ENUMERATION, (fmi2Integer)CELL(i).integer)
+GET(Boolean, KIND_BOOLEAN, (fmi2Boolean)CELL(i).integer)
+GET(String, KIND_STRING, TEXT(i))
+SET(Real, KIND_REAL, CELL(i).real = values[i])
+SET(Integer, KIND_INTEGER | KIND_ENUMERATION, CELL(i).integer = values[i])
+SET(Boolean, KIND_BOOLEAN, CELL(i).integer = values[i] != fmi2False)
+SET(String, KIND_STRING, good = session_set_text(s, references[i], values[i]))
 
-/* State: one piece of memory; serialized, with a checksum behind it */
+/* States */
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
-    if (!c || !state) return fmi2Error;
-    free(*state);
-    *state = session_save(((Instance *)c)->session);
-    return answer(*state != NULL);
+    return answer(session_get_state(c, state));
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-    return answer(c && state && session_restore(((Instance *)c)->session, state));
+    return answer(session_set_state(c, state));
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
-    if (!c) return fmi2Error;
-    if (state) free(*state), *state = NULL;
-    return fmi2OK;
+    return answer(session_free_state(c, state));
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
-    if (!c || !state || !size) return fmi2Error;
-    *size = (size_t)((State *)state)->size + sizeof(uint32_t);
-    return fmi2OK;
+    return answer(session_serialized_size(c, state, size));
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-    if (!c || !state || !bytes) return fmi2Error;
-    int64_t length = ((State *)state)->size;
-    uint32_t sum = checksum(state, length);
-    if (size < (size_t)length + sizeof sum) return fmi2Error;
-    memcpy(bytes, state, (size_t)length);
-    memcpy(bytes + length, &sum, sizeof sum);
-    return fmi2OK;
+    return answer(session_serialize(c, state, bytes, size));
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size,
                                    fmi2FMUstate *state) {
-    if (!c || !bytes || !state) return fmi2Error;
-    uint32_t sum = 0;
-    size_t length = size < sizeof sum ? 0 : size - sizeof sum;
-    memcpy(&sum, bytes + length, size < sizeof sum ? 0 : sizeof sum);
-    if (sum != checksum((const uint8_t *)bytes, (int64_t)length)) length = 0;
-    if (!session_is_state(((Instance *)c)->session, bytes, length)) return fmi2Error;
-    State *copy = malloc(length);
-    if (!copy) return fmi2Error;
-    memcpy(copy, bytes, length);
-    free(*state);
-    *state = copy;
-    return fmi2OK;
+    return answer(session_deserialize(c, bytes, size, state));
 }
 
-/* What the capability flags say is not there */
-
-fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[],
-                                        size_t unknowns, const fmi2ValueReference known[],
-                                        size_t knowns, const fmi2Real dknown[], fmi2Real dunknown[]) {
-    (void)unknown, (void)unknowns, (void)known, (void)knowns, (void)dknown, (void)dunknown;
-    return answer(refused(c, __func__));
-}
-
-fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference references[],
-                                       size_t count, const fmi2Integer order[],
-                                       const fmi2Real values[]) {
-    (void)references, (void)count, (void)order, (void)values;
-    return answer(refused(c, __func__));
-}
-
-fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference references[],
-                                        size_t count, const fmi2Integer order[], fmi2Real values[]) {
-    (void)references, (void)count, (void)order, (void)values;
-    return answer(refused(c, __func__));
-}
-
-fmi2Status fmi2CancelStep(fmi2Component c) { return answer(refused(c, __func__)); }
-
-fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value) {
-    (void)kind, (void)value;
-    return answer(refused(c, __func__));
-}
+/* The status of the last step, none of which is ever pending */
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value) {
-    if (!c || !value || kind != fmi2LastSuccessfulTime) return answer(refused(c, __func__));
-    *value = ((Instance *)c)->session->state.time;
+    const Session *s = c;
+    if (!s || !value || kind != fmi2LastSuccessfulTime)
+        return answer(session_unsupported(c, __func__));
+    *value = s->state.time;
     return fmi2OK;
-}
-
-fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value) {
-    (void)kind, (void)value;
-    return answer(refused(c, __func__));
 }
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value) {
-    if (!c || !value || kind != fmi2Terminated) return answer(refused(c, __func__));
-    *value = ((Instance *)c)->session->state.phase == TERMINATED;
+    const Session *s = c;
+    if (!s || !value || kind != fmi2Terminated) return answer(session_unsupported(c, __func__));
+    *value = s->state.phase == TERMINATED;
     return fmi2OK;
 }
 
-fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String *value) {
-    (void)kind, (void)value;
-    return answer(refused(c, __func__));
-}
+/* What the capability flags say is not there, and model exchange */
+
+#define REFUSED(NAME, ...) \
+    fmi2Status NAME(__VA_ARGS__) { return answer(session_unsupported(c, __func__)); }
+
+REFUSED(fmi2GetStatus, fmi2Component c, const fmi2StatusKind kind, fmi2Status *value)
+REFUSED(fmi2GetIntegerStatus, fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value)
+REFUSED(fmi2GetStringStatus, fmi2Component c, const fmi2StatusKind kind, fmi2String *value)
+REFUSED(fmi2CancelStep, fmi2Component c)
+REFUSED(fmi2SetRealInputDerivatives, fmi2Component c, const fmi2ValueReference references[],
+        size_t count, const fmi2Integer order[], const fmi2Real values[])
+REFUSED(fmi2GetRealOutputDerivatives, fmi2Component c, const fmi2ValueReference references[],
+        size_t count, const fmi2Integer order[], fmi2Real values[])
+REFUSED(fmi2GetDirectionalDerivative, fmi2Component c, const fmi2ValueReference unknown[], size_t m,
+        const fmi2ValueReference known[], size_t n, const fmi2Real dknown[], fmi2Real dunknown[])
+REFUSED(fmi2EnterEventMode, fmi2Component c)
+REFUSED(fmi2NewDiscreteStates, fmi2Component c, fmi2EventInfo *info)
+REFUSED(fmi2EnterContinuousTimeMode, fmi2Component c)
+REFUSED(fmi2CompletedIntegratorStep, fmi2Component c, fmi2Boolean no_rollback, fmi2Boolean *event,
+        fmi2Boolean *terminate)
+REFUSED(fmi2SetTime, fmi2Component c, fmi2Real time)
+REFUSED(fmi2SetContinuousStates, fmi2Component c, const fmi2Real values[], size_t count)
+REFUSED(fmi2GetDerivatives, fmi2Component c, fmi2Real values[], size_t count)
+REFUSED(fmi2GetEventIndicators, fmi2Component c, fmi2Real values[], size_t count)
+REFUSED(fmi2GetContinuousStates, fmi2Component c, fmi2Real values[], size_t count)
+REFUSED(fmi2GetNominalsOfContinuousStates, fmi2Component c, fmi2Real values[], size_t count)

@@ -1,5 +1,5 @@
-/* One instance between instantiation and release, whatever version of FMI calls it
-   (as pldf/fmi/session.py). Every function that returns false has told why. */
+/* One instance between instantiation and release, whatever version of FMI calls it (as
+   pldf/fmi/session.py): FMI's instance is this Session. What returns false has told why. */
 #ifndef PLDF_SESSION_H
 #define PLDF_SESSION_H
 
@@ -9,7 +9,7 @@
 #include "store.h"
 
 typedef enum { INSTANTIATED, INITIALIZING, STEPPING, TERMINATED } Phase;
-typedef void Tell(void *host, Level level, const char *text);
+enum { AT_START = 1 << INSTANTIATED, IN_INITIALIZATION = 1 << INITIALIZING, AT_STEP = 1 << STEPPING };
 
 typedef struct { /* what is saved and restored, followed by the kept columns */
     char guid[40];
@@ -26,38 +26,68 @@ typedef struct { /* what follows from the parameters */
     char folder[PATH_SIZE]; /* of profiles; empty: nothing is persisted */
 } Run;
 
-typedef struct {
+typedef struct Session Session;
+typedef struct { /* its logger, as it came, and the function that calls it by this version of FMI */
+    void (*tell)(const Session *s, Level level, const char *category, const char *text);
+    void (*logger)(void);
+    void *environment;
+    const char *doubled; /* characters that mean something else in its messages */
+} Importer;
+
+struct Session {
     State state;
     Run run;
-    bool prepared, finished;
+    bool prepared, finished, events; /* events: tell INFO messages too */
+    double stop_time;
     char resources[PATH_SIZE];
-    Tell *tell;
-    void *host;
-} Session;
+    Importer importer;
+    char name[];
+};
 
-Session *session_new(const char *resources, Tell *tell, void *host);
+/* NULL, and the importer is told, if there is a `problem` or no name. */
+Session *session_new(const char *name, const char *resources, bool events, const char *problem,
+                     const Importer *importer);
 void session_free(Session *s);
-void session_reset(Session *s);
+bool session_reset(Session *s);
+/* Returns whether it was no error. */
+bool session_tell(Session *s, Level level, const char *format, ...);
+bool session_log(Session *s, bool on, size_t count, const char *const categories[]);
+bool session_unsupported(Session *s, const char *call);
 
 bool session_allows(Session *s, const char *call, unsigned phases); /* sum of 1 << Phase */
-bool session_set_start(Session *s, double time);
+bool session_set_times(Session *s, double start, double stop);
+bool session_enter_initialization(Session *s);
 bool session_exit_initialization(Session *s);
 bool session_step(Session *s, double time, double step_s);
-void session_terminate(Session *s);
+bool session_terminate(Session *s);
 
-/* The variable with this value reference and one of these kinds, else NULL. */
-const Variable *session_variable(Session *s, uint32_t reference, int kinds);
-bool session_before_get(Session *s, const uint32_t *references, size_t count, int kinds);
-bool session_before_set(Session *s, const uint32_t *references, size_t count, int kinds);
-bool session_set_text(Session *s, const Variable *variable, const char *text);
+/* Check what a get or a set of these kinds was given. */
+bool session_can_get(Session *s, const uint32_t *references, size_t count, const void *values,
+                     size_t value_count, int kinds);
+bool session_can_set(Session *s, const uint32_t *references, size_t count, const void *values,
+                     size_t value_count, int kinds);
+double session_time(const Session *s);
+bool session_set_text(Session *s, uint32_t reference, const char *text);
+/* The value of the i-th of these `references` to variables of the session `s`. */
+#define CELL(i) s->state.record[model.variables[references[i]].cell]
+#define TEXT(i) s->state.texts[model.variables[references[i]].cell]
 
-State *session_save(const Session *s); /* NULL: no memory */
-bool session_restore(Session *s, const State *state);
-/* False unless these bytes are a saved state of this build. */
-bool session_is_state(Session *s, const void *bytes, size_t size);
+/* FMU states; serialized, a checksum follows (state.c) */
+bool session_get_state(Session *s, void **state);
+bool session_set_state(Session *s, const void *state);
+bool session_free_state(Session *s, void **state);
+bool session_serialized_size(Session *s, const void *state, size_t *size);
+bool session_serialize(Session *s, const void *state, void *bytes, size_t size);
+bool session_deserialize(Session *s, const void *bytes, size_t size, void **state);
 
-void session_complain(Session *s, Level level, const char *format, ...);
-/* Path of a file:// address (or a plain path). */
-void path_of_address(const char *address, char *path);
+/* Starts a run with what was set so far; the old one stays if that fails. */
+bool session_start_run(Session *s);
+
+/* What a run needs from the disk, and what it leaves there (run.c) */
+bool run_prepare(Session *s, State *state, Run *run);
+void run_call(Entry *entry, State *state, Run *run, double step_s); /* if the model has it */
+void run_learn(Session *s);
+void run_release(Run *run);
+void path_of_address(const char *address, char *path); /* file:// or plain */
 
 #endif

@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const int64_t FILE_MAX = (int64_t)1 << 32;
-
 static void path_of(const char *folder, const Profile *wanted, char *path) {
     snprintf(path, PATH_SIZE, "%s/driver-%06lld_route-%s.pldf", folder, (long long)wanted->driver,
              wanted->route);
@@ -19,9 +17,9 @@ void profile_free(Profile *profile) {
 /* Reads the file into `found`; REFUSED with the reason if it is not the profile that is wanted. */
 static StoreResult read_profile(const char *path, const Profile *wanted, Profile *found, char *why) {
     memset(found, 0, sizeof *found);
-    switch (disk_read(path, FILE_MAX, &found->bytes, &found->size, why)) {
+    switch (disk_read(path, &found->bytes, &found->size, why)) {
     case READ_ABSENT: return STORE_ABSENT;
-    case READ_FAILED: found->bytes = NULL; return STORE_REFUSED;
+    case READ_FAILED: return STORE_REFUSED;
     case READ_DONE: break;
     }
     bool good = profile_parse(found, why);

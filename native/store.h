@@ -5,7 +5,7 @@
 #include "profile.h"
 
 enum { MESSAGE_SIZE = 3 * PATH_SIZE };
-typedef enum { INFO, WARNING, ERROR_LEVEL } Level;
+typedef enum { INFO = 0, WARNING = 1, ERROR_LEVEL = 3 } Level; /* numbers of FMI's status */
 typedef enum { STORE_ABSENT, STORE_LOADED, STORE_REFUSED } StoreResult;
 
 /* Fill `profile`, whose driver, route and nodes say what is wanted. A file that cannot be used is

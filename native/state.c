@@ -1,0 +1,115 @@
+/* FMU states: one piece of memory; serialized, with a checksum behind it. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "session.h"
+
+/* How many values per node and per script line belong to the state. */
+static int64_t kept_values(int64_t nodes, int64_t rows) {
+    return model.kept_columns * nodes + model.script_columns * rows;
+}
+
+static bool is_whole(const State *state) {
+    return state->phase == STEPPING || state->phase == TERMINATED;
+}
+
+static void keep_columns(const Session *s, double *columns) {
+    int64_t kept = model.kept_columns * s->state.nodes, script = model.script_columns * s->state.rows;
+    memcpy(columns, s->run.block, (size_t)(8 * kept));
+    memcpy(columns + kept, s->run.block + model.node_columns * s->state.nodes, (size_t)(8 * script));
+}
+
+static void take_columns(Session *s, const double *columns) {
+    int64_t kept = model.kept_columns * s->state.nodes, script = model.script_columns * s->state.rows;
+    memcpy(s->run.block, columns, (size_t)(8 * kept));
+    memcpy(s->run.block + model.node_columns * s->state.nodes, columns + kept, (size_t)(8 * script));
+}
+
+bool session_get_state(Session *s, void **state) {
+    if (!s || !state) return false;
+    bool whole = s->run.block && is_whole(&s->state);
+    int64_t size = (int64_t)sizeof(State) + 8 * (whole ? kept_values(s->state.nodes, s->state.rows) : 0);
+    State *copy = malloc((size_t)size);
+    if (!copy) return session_tell(s, ERROR_LEVEL, "not enough memory for a state");
+    *copy = s->state;
+    copy->size = size;
+    if (whole) keep_columns(s, (double *)(copy + 1));
+    free(*state);
+    *state = copy;
+    return true;
+}
+
+static bool same_parameters(const State *a, const State *b) {
+    for (int32_t i = 0; i < model.variable_count; i++) {
+        const Variable *v = &model.variables[i];
+        if (v->kind != KIND_STRING && v->causality <= FIXED_PARAMETER &&
+            a->record[v->cell].integer != b->record[v->cell].integer)
+            return false;
+    }
+    return memcmp(a->texts, b->texts, sizeof a->texts) == 0;
+}
+
+bool session_set_state(Session *s, const void *from) {
+    const State *state = from;
+    if (!s || !state) return false;
+    State before = s->state;
+    bool whole = is_whole(state);
+    if (whole && !(s->prepared && same_parameters(&s->state, state))) {
+        s->state = *state; /* what is not in it follows from its parameters */
+        if (!session_start_run(s)) return s->state = before, false;
+    }
+    int64_t nodes = s->state.nodes, rows = s->state.rows; /* of the block */
+    bool fits = nodes == state->nodes && rows == state->rows &&
+                state->size == (int64_t)sizeof *state + 8 * kept_values(nodes, rows);
+    s->state = whole && !fits ? before : *state;
+    s->state.nodes = nodes;
+    s->state.rows = rows;
+    if (!whole) s->state.ready = 0;
+    else if (fits) take_columns(s, (const double *)(state + 1));
+    return !whole || fits ||
+           session_tell(s, ERROR_LEVEL, "the route of this state has changed; not restored");
+}
+
+bool session_free_state(Session *s, void **state) {
+    if (state) free(*state), *state = NULL;
+    return s != NULL;
+}
+
+bool session_serialized_size(Session *s, const void *state, size_t *size) {
+    if (!s || !state || !size) return false;
+    *size = (size_t)((const State *)state)->size + sizeof(uint32_t);
+    return true;
+}
+
+bool session_serialize(Session *s, const void *state, void *bytes, size_t size) {
+    size_t needed;
+    if (!bytes || !session_serialized_size(s, state, &needed)) return false;
+    if (size < needed) return session_tell(s, ERROR_LEVEL, "too little room for the state");
+    uint32_t sum = checksum(state, (int64_t)(needed - sizeof sum));
+    memcpy(bytes, state, needed - sizeof sum);
+    memcpy((uint8_t *)bytes + needed - sizeof sum, &sum, sizeof sum);
+    return true;
+}
+
+/* Whether these bytes, with a checksum behind them, are a state of this build. */
+static bool is_state(const uint8_t *bytes, size_t size) {
+    State state;
+    uint32_t sum;
+    if (size < sizeof state) return false;
+    memcpy(&state, bytes, sizeof state);
+    memcpy(&sum, bytes + size, sizeof sum);
+    return sum == checksum(bytes, (int64_t)size) && state.size == (int64_t)size &&
+           strncmp(state.guid, model.guid, sizeof state.guid) == 0;
+}
+
+bool session_deserialize(Session *s, const void *bytes, size_t size, void **state) {
+    if (!s || !bytes || !state) return false;
+    if (size < sizeof(uint32_t) || !is_state(bytes, size - sizeof(uint32_t)))
+        return session_tell(s, ERROR_LEVEL, "these bytes are not a state of this FMU; not restored");
+    State *copy = malloc(size);
+    if (!copy) return session_tell(s, ERROR_LEVEL, "not enough memory for a state");
+    memcpy(copy, bytes, size - sizeof(uint32_t));
+    free(*state);
+    *state = copy;
+    return true;
+}
