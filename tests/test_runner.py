@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 from pldf import cli
+from pldf.build_version import build_version
 from pldf.instance import ModelError
 from pldf.study.drives_table import COLUMNS, read_drives
 from pldf.study.participants import Participant
@@ -118,12 +119,13 @@ def test_the_fmus_give_the_same_bytes(fmu_folder: Path, tmp_path: Path) -> None:
     study = write_study(tmp_path, count=2)
     text = study.read_text().replace('"A2", "B1"', '"A2"').replace("0.05", "0.1")
     study.write_text(text)
-    for out, more in (("kernels", []), ("fmus", ["--fmu", "--fmus", str(fmu_folder)])):
+    for out, more in (("kernels", []), ("fmus", ["--fmu", "python", "--fmus", str(fmu_folder)])):
         assert (
             cli.main(["study", str(study), "--out", str(tmp_path / out), "--jobs", "2", *more]) == 0
         )
     one, other = files(tmp_path / "kernels"), files(tmp_path / "fmus")
-    assert json.loads(other.pop("versions.json"))["through"] == "FMUs"
+    through = json.loads(other.pop("versions.json"))["through"]
+    assert through == f"Python FMU, version {build_version()}"
     assert json.loads(one.pop("versions.json"))["through"] == "kernels"
     assert one == other
 
@@ -132,8 +134,8 @@ def test_missing_fmus_leave_nothing_behind(
     finished: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     arguments = ["study", str(finished / "small.toml"), "--out", str(tmp_path / "out")]
-    assert cli.main([*arguments, "--fmu", "--fmus", str(tmp_path)]) == 1
-    assert "no such FMU" in capsys.readouterr().err
+    assert cli.main([*arguments, "--fmu", "python", "--fmus", str(tmp_path)]) == 1
+    assert "no Python FMUs are there" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
 
@@ -274,7 +276,7 @@ def test_a_folder_of_others_is_left_alone(
         ["FILE", "--seed", "3"],
         ["FILE", "--set", "wish.offset_mps=1"],
         ["FILE", "--jobs", "0"],
-        ["FILE", "--fmu", "--scheduler", "tcp://nowhere:1"],
+        ["FILE", "--fmu", "native", "--scheduler", "tcp://nowhere:1"],
     ],
 )
 def test_wrong_usage(finished: Path, arguments: list[str]) -> None:

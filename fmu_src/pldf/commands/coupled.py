@@ -15,11 +15,14 @@ from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeE
 
 from ..instance import ModelError
 from ..study.fmu import Fmu, Said, Value
-from ..study.master import STEP_S, connections
+from ..study.master import STEP_S, connections, unpacked
+from ..study.which_fmus import KINDS, NATIVE_FOLDER, USUAL_FOLDER, choose_fmus
 from .options import parse_value
 
 _INTEGER_MAX: Final = 2**31 - 1  # of an FMI Integer
 _NEAR_MAX: Final = 3
+
+NATIVE_IF_GOOD: Final = "native, if they are there for this platform and up to date"
 
 # part -> variable -> value
 Chosen = dict[str, dict[str, Value]]
@@ -43,14 +46,35 @@ def add_coupling(parser: argparse.ArgumentParser) -> None:
         help="communication step in seconds (default: 0.01)",
     )  # fmt: skip
     parser.add_argument(
-        "--fmus", type=Path, default=Path("dist"), metavar="FOLDER",
-        help="where build_fmu.py put the FMUs (default: dist)",
+        "--fmus", type=Path, default=USUAL_FOLDER, metavar="FOLDER",
+        help=f"where build_fmu.py put the FMUs, the native ones in its folder {NATIVE_FOLDER} "
+        f"(default: {USUAL_FOLDER})",
     )  # fmt: skip
     parser.add_argument(
         "--set", dest="settings", metavar="FMU.VARIABLE=VALUE", action="append", default=[],
         help="set a parameter, e.g. driver.wish.offset_mps=2 or pldf.learning.weight=0.4; FMU is "
         "pldf, vehicle or driver and may be left out where the name is clear (repeatable)",
     )  # fmt: skip
+
+
+def add_fmu(parser: argparse.ArgumentParser, usual: str) -> None:
+    """Add ``--fmu``; ``usual`` says what happens without it."""
+    parser.add_argument(
+        "--fmu", choices=KINDS,
+        help="drive the native FMUs (quick) or the Python ones; the results are the same "
+        f"(default: {usual})",
+    )  # fmt: skip
+
+
+@contextmanager
+def chosen_fmus(options: argparse.Namespace) -> Iterator[dict[str, Fmu]]:
+    """Unpack the FMUs that ``--fmus`` and ``--fmu`` ask for; say which they are."""
+    choice = choose_fmus(options.fmus, options.fmu)
+    for note in choice.notes:
+        print(f"pldf: {note}", file=sys.stderr)
+    with unpacked(choice.folder) as fmus:
+        print(f"FMUs       {choice.kind}, in {choice.folder}")
+        yield fmus
 
 
 def chosen_values(fmus: Mapping[str, Fmu], settings: list[str]) -> Chosen:

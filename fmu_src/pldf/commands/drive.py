@@ -14,10 +14,19 @@ from ..kernel.codes import LEARN
 from ..roads import fingerprint
 from ..store import STORE_VARIABLE, ProfileStore
 from ..study.fmu import Value
-from ..study.master import Drive, drive, unpacked
+from ..study.master import Drive, drive
 from ..study.phases import PHASES, SCRIPT, Phase, Setting, choose_route, values_of
 from ..study.recording import write_recording
-from .coupled import add_coupling, chosen_values, progress_bar, require_no_errors, tell
+from .coupled import (
+    NATIVE_IF_GOOD,
+    add_coupling,
+    add_fmu,
+    chosen_fmus,
+    chosen_values,
+    progress_bar,
+    require_no_errors,
+    tell,
+)
 
 SUMMARY: Final = "Drive once with the coupled FMUs; write the recording and a picture of it."
 EXAMPLE: Final = (
@@ -62,6 +71,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--plot", type=Path, metavar="PNG", help="picture (default: beside the recording)"
     )
     add_coupling(parser)
+    add_fmu(parser, NATIVE_IF_GOOD)
     parser.set_defaults(wrong_usage=parser.error)
 
 
@@ -70,7 +80,7 @@ def run(options: argparse.Namespace) -> None:
     phase = _phase(options)
     route, road = choose_route(options.route)
     csv = options.out if options.out.suffix.lower() == ".csv" else options.out / "drive.csv"
-    with unpacked(options.fmus) as fmus:
+    with chosen_fmus(options) as fmus:
         setting = Setting(
             route, road, options.driver_id, options.seed, options.store, options.step,
             _with_script(options, chosen_values(fmus, options.settings)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
@@ -18,12 +18,12 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from ..study.master import unpacked
+from ..study.fmu import Fmu
 from ..study.results import DRIVES, PARTICIPANTS, Results
 from ..study.runner import in_processes, on_cluster, run_missing
 from ..study.study_file import Study, read_study
 from ..study.unit import Job
-from .coupled import stderr_progress
+from .coupled import chosen_fmus, stderr_progress
 
 
 def add_running(parser: argparse.ArgumentParser) -> None:
@@ -42,9 +42,6 @@ def add_running(parser: argparse.ArgumentParser) -> None:
         help="drive on the Dask cluster with this scheduler, e.g. tcp://host:8786",
     )  # fmt: skip
     group.add_argument(
-        "--fmu", action="store_true", help="drive through the FMUs: the same results, slowly"
-    )
-    group.add_argument(
         "--restart", action="store_true", help="forget what was driven before and start anew"
     )
 
@@ -53,9 +50,9 @@ def run_file(options: argparse.Namespace) -> None:
     """Drive what is missing of a study; print where to look."""
     study = read_study(options.file)
     out: Path = options.out or study.out
-    results = Results(study, out, through="FMUs" if options.fmu else "kernels")
     with ExitStack() as stack:
-        fmus = stack.enter_context(unpacked(options.fmus)) if options.fmu else None
+        fmus = stack.enter_context(chosen_fmus(options)) if options.fmu else None
+        results = Results(study, out, through=_through(fmus))
         results.open(options.restart)
         run = on_cluster(options.scheduler) if options.scheduler else in_processes(options.jobs)
         bar = stack.enter_context(_progress(study, results))
@@ -76,6 +73,11 @@ def run_file(options: argparse.Namespace) -> None:
     print(f"{study.title}: {len(study.participants)} participants, {drives} drives")
     print(f"Drives are in {out / DRIVES}, drivers in {out / PARTICIPANTS}.")
     print(f"Look at the result with: pldf analyse {out}")
+
+
+def _through(fmus: Mapping[str, Fmu] | None) -> str:
+    """Return what drives, for the results."""
+    return ", ".join(sorted({fmu.about for fmu in fmus.values()})) if fmus else "kernels"
 
 
 @contextmanager

@@ -13,10 +13,17 @@ from rich.table import Table
 
 from ..store import StoredProfile
 from ..study.interventions import Rates
-from ..study.master import unpacked
 from ..study.phases import PHASES, PUBLISHED, Phase, Setting, choose_route
 from ..study.run import Driven, mean_rates, run_study
-from .coupled import add_coupling, chosen_values, progress_bar, tell
+from .coupled import (
+    NATIVE_IF_GOOD,
+    add_coupling,
+    add_fmu,
+    chosen_fmus,
+    chosen_values,
+    progress_bar,
+    tell,
+)
 from .participants import add_running, run_file
 
 SUMMARY: Final = "Drive a study: the participants of a study file, or one driver with figures."
@@ -43,6 +50,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="where everything is written (default: FILE's output; without FILE: out)",
     )  # fmt: skip
     add_coupling(parser)
+    add_fmu(parser, f"{NATIVE_IF_GOOD}; with FILE none, but the same source in process, quickest")
     usual = {name: parser.get_default(name) for name in _OF_ONE_DRIVER}
     parser.set_defaults(refuse=parser.error, usual=usual)
 
@@ -56,8 +64,8 @@ def run(options: argparse.Namespace) -> None:
             if getattr(options, name) != value:
                 options.refuse(f"{_OF_ONE_DRIVER[name]} is for one driver; write it into FILE")
         run_file(options)
-    elif options.scheduler or options.fmu or options.restart:
-        options.refuse("--scheduler, --fmu and --restart need a study FILE")
+    elif options.scheduler or options.restart:
+        options.refuse("--scheduler and --restart need a study FILE")
     else:
         options.out = options.out or Path("out")
         _run_one_driver(options)
@@ -67,7 +75,7 @@ def _run_one_driver(options: argparse.Namespace) -> None:
     """Drive all phases, draw them, print the table and where to look."""
     route, road = choose_route(options.route)
     phases = list(PHASES.values())
-    with unpacked(options.fmus) as fmus:
+    with chosen_fmus(options) as fmus:
         setting = Setting(
             route, road, options.driver_id, options.seed, options.out / "profiles", options.step,
             chosen_values(fmus, options.settings),

@@ -77,6 +77,16 @@ class Fmu:
     signals: dict[str, Signal]
     references: dict[str, int]
 
+    @property
+    def native(self) -> bool:
+        """Whether it needs no Python."""
+        return not self.description.coSimulation.needsExecutionTool
+
+    @property
+    def about(self) -> str:
+        """Kind and version: what decides the results."""
+        return f"{'native' if self.native else 'Python'} FMU, version {self.description.version}"
+
     def named(self, causality: Causality) -> list[Signal]:
         """Return the variables of one causality in the order of the FMU."""
         return [s for s in self.signals.values() if s.causality == causality]
@@ -88,18 +98,11 @@ def unpack(path: Path, folder: Path) -> Fmu:
     Raises:
         ModelError: it is not there or not an FMU for co-simulation.
     """
-    if not path.is_file():
-        raise ModelError(
-            f"{path}: no such FMU; build the FMUs with 'python build_fmu.py' or name their folder "
-            "with --fmus"
-        )
+    description = describe(path)
     try:
-        description = read_model_description(str(path))
         extract(str(path), unzipdir=str(folder))
     except Exception as error:  # fmpy raises bare Exception for all that is wrong with an archive
-        raise ModelError(f"{path}: not a usable FMU ({error}); build it again") from error
-    if description.coSimulation is None:
-        raise ModelError(f"{path}: this FMU is not for co-simulation")
+        raise _unusable(path, error) from error
     items = {
         kind.name: Enumeration(kind.name, tuple(item.name for item in kind.items))
         for kind in description.typeDefinitions
@@ -108,6 +111,26 @@ def unpack(path: Path, folder: Path) -> Fmu:
     variables = description.modelVariables
     signals = {v.name: _signal(v, items) for v in variables}
     return Fmu(folder, description, signals, {v.name: v.valueReference for v in variables})
+
+
+def describe(path: Path) -> Any:
+    """Return fmpy's description of the FMU ``path``; ModelError as ``unpack``."""
+    if not path.is_file():
+        raise ModelError(
+            f"{path}: no such FMU; build the FMUs with 'python build_fmu.py' or name their folder "
+            "with --fmus"
+        )
+    try:
+        description = read_model_description(str(path))
+    except Exception as error:  # as above
+        raise _unusable(path, error) from error
+    if description.coSimulation is None:
+        raise ModelError(f"{path}: this FMU is not for co-simulation")
+    return description
+
+
+def _unusable(path: Path, error: Exception) -> ModelError:
+    return ModelError(f"{path}: not a usable FMU ({error}); build it again")
 
 
 def _signal(variable: Any, enumerations: Mapping[str, Enumeration]) -> Signal:

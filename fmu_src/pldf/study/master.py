@@ -20,6 +20,7 @@ import numpy as np
 
 from ..instance import ModelError
 from .fmu import Fmu, Place, Said, Slave, Value, unpack
+from .native_files import readable_values
 from .recording import COLUMNS, Recording
 
 # The vehicle comes first: the function plans its first outputs from where the vehicle is.
@@ -157,12 +158,14 @@ def drive(fmus: Mapping[str, Fmu], values: Values, course: Course) -> Drive:
 
     Args:
         fmus: from ``unpacked``.
-        values: per part, parameters and unconnected inputs to set, by name.
+        values: per part, parameters and unconnected inputs to set, by name; files of roads and
+            scripts as for Python FMUs.
         course: where to stop, and the step.
 
     Raises:
         ModelError: an FMU refused a value or a call.
     """
+    values = readable_values(fmus, values)
     slaves: dict[str, Slave] = {}
     with _silenced(slaves):
         try:

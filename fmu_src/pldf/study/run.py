@@ -142,7 +142,7 @@ def _described(fmus: Mapping[str, Fmu], phases: Sequence[Phase], setting: Settin
         "route": setting.route.name,
         "route_fingerprint": fingerprint(setting.route),
         "set": setting.more,
-        "fmus": {part: fmu.description.guid for part, fmu in fmus.items()},
+        "fmus": {part: fmu.about for part, fmu in fmus.items()},
     }
     return (json.dumps(described, indent=2) + "\n").encode()
 

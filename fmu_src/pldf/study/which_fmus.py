@@ -1,0 +1,148 @@
+"""Which FMUs drive, native ones or Python ones, and whether they are up to date."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Literal, NamedTuple
+
+import fmpy  # type: ignore[import-untyped]
+
+from ..build_version import build_version
+from ..instance import ModelError
+from ..native.targets import TARGETS
+from .fmu import describe
+from .master import PARTS
+
+Kind = Literal["native", "python"]
+KINDS: Final[tuple[Kind, ...]] = ("native", "python")
+# Where build_fmu.py puts the native FMUs: in the folder of the Python ones.
+NATIVE_FOLDER: Final = "native"
+USUAL_FOLDER: Final = Path("dist")
+PLATFORM: Final[str] = fmpy.platform_tuple
+
+_STALE: Final = "made from other sources than those installed"
+
+
+class Choice(NamedTuple):
+    """FMUs to drive with.
+
+    Attributes:
+        kind: what they are.
+        folder: where they are.
+        notes: what a person should know of them, and the way out.
+    """
+
+    kind: Kind
+    folder: Path
+    notes: tuple[str, ...] = ()
+
+
+def choose_fmus(folder: Path, kind: Kind | None = None) -> Choice:
+    """Choose the FMUs of one kind in ``folder``, native ones in its ``native`` or directly in it.
+
+    Without a kind native ones, if they run on this platform and were made from the sources
+    installed, else Python ones.
+
+    Raises:
+        ModelError: FMUs of this kind are not there, do not run here, or cannot be read.
+    """
+    found: dict[Kind, _Found] = {}
+    for place in (folder / NATIVE_FOLDER, folder):
+        one = _look(place)
+        if one is not None:
+            found.setdefault(one.kind, one)
+    if kind is None:
+        return _usual(folder, found)
+    chosen = found.get(kind)
+    if chosen is None:
+        raise ModelError(_missing(folder, kind))
+    if not chosen.runs_here:
+        raise ModelError(f"{chosen.problem}; {chosen.rebuild}, or drive with --fmu python")
+    return Choice(kind, chosen.folder, chosen.notes)
+
+
+@dataclass(frozen=True)
+class _Found:
+    """The three FMUs in a folder."""
+
+    kind: Kind
+    folder: Path
+    versions: frozenset[str]
+    runs_here: bool
+
+    @property
+    def problem(self) -> str:
+        """What is wrong with them; empty if nothing is."""
+        if not self.runs_here:
+            return f"{self.folder}: native FMUs, but not for this platform ({PLATFORM})"
+        return "" if self.versions == {build_version()} else f"{self.folder}: {_STALE}"
+
+    @property
+    def rebuild(self) -> str:
+        """What to do about it."""
+        return f"build them anew with {_command(self.folder, self.kind)}"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        return (f"{self.problem}; {self.rebuild}",) if self.problem else ()
+
+
+def _usual(folder: Path, found: Mapping[Kind, _Found]) -> Choice:
+    native, python = found.get("native"), found.get("python")
+    if native is None:
+        # If there is nothing at all, unpacking says what is missing.
+        return Choice("python", folder, python.notes if python else ())
+    if not native.problem:
+        return Choice("native", native.folder)
+    if python is None:
+        way_out = native.rebuild
+        if native.runs_here:
+            way_out += ", or drive with them: --fmu native"
+        raise ModelError(f"{native.problem}, and no Python FMUs are there; {way_out}")
+    passed_over = f"{native.problem}, so the Python FMUs drive; {native.rebuild}"
+    return Choice("python", python.folder, (passed_over, *python.notes))
+
+
+def _look(folder: Path) -> _Found | None:
+    """Return what is in ``folder``; None if not all three FMUs are."""
+    paths = [folder / f"{name}.fmu" for name in PARTS.values()]
+    if not all(path.is_file() for path in paths):
+        return None
+    described = [describe(path) for path in paths]
+    needs_python = any(one.coSimulation.needsExecutionTool for one in described)
+    return _Found(
+        kind="python" if needs_python else "native",
+        folder=folder,
+        versions=frozenset(one.version or "" for one in described),
+        runs_here=needs_python or all(_runs_here(path) for path in paths),
+    )
+
+
+def _runs_here(path: Path) -> bool:
+    if PLATFORM not in TARGETS:
+        return False
+    target = TARGETS[PLATFORM]
+    with zipfile.ZipFile(path) as archive:
+        return f"binaries/{target.fmi2}/{path.stem}{target.suffix}" in archive.namelist()
+
+
+def _missing(folder: Path, kind: Kind) -> str:
+    other = "python" if kind == "native" else "native"
+    place = folder / NATIVE_FOLDER if kind == "native" else folder
+    return (
+        f"{place}: no {_called(kind)} FMUs are there; build them with "
+        f"{_command(folder, kind)}, name their folder with --fmus, or drive with --fmu {other}"
+    )
+
+
+def _command(folder: Path, kind: Kind) -> str:
+    out = folder.parent if folder.name == NATIVE_FOLDER else folder
+    options = " --native" if kind == "native" else ""
+    return f"'python build_fmu.py{options}{'' if out == USUAL_FOLDER else f' --out {out}'}'"
+
+
+def _called(kind: Kind) -> str:
+    return "Python" if kind == "python" else kind
