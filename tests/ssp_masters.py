@@ -52,11 +52,16 @@ def libcosim(package: str, seconds: float) -> list[tuple[float, float]]:
     return rows  # the execution terminates its FMUs when it is deleted
 
 
-def ecos(package: str, seconds: float) -> list[tuple[float, float]]:
-    if sys.platform == "linux":  # its library wants this one, and the wheel does not bring it
+def load_tbb() -> None:
+    """Load the library that the one of ecos wants on Linux, and that its wheel does not bring."""
+    if sys.platform == "linux":
         files = metadata.files("tbb") or ()
         library = next(file for file in files if file.name == "libtbb.so.12")
         ctypes.CDLL(str(library.locate()), ctypes.RTLD_GLOBAL)
+
+
+def ecos(package: str, seconds: float) -> list[tuple[float, float]]:
+    load_tbb()
     from ecospy import EcosSimulation  # noqa: PLC0415
 
     rows = []

@@ -1,4 +1,4 @@
-"""The SSP packages in importers written by others: the same curves, the same lessons."""
+"""Packages and FMUs in importers written by others: the same curves, the same lessons."""
 
 from __future__ import annotations
 
@@ -8,9 +8,12 @@ import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+from typing import NamedTuple
 
+import lone_fmu
 import numpy as np
 import pytest
+from fmi_host import Host
 from numpy.typing import NDArray
 from pldf.roads import fingerprint, packed_route
 from pldf.store import ProfileStore, StoredProfile
@@ -22,11 +25,30 @@ from ssp_masters import STEP_S
 
 FloatArray = NDArray[np.float64]
 
+FOLDER = Path(__file__).parent
 IMPORTERS = ("fmpy", "libcosim", "ecos")
-SECONDS = 30.0
 COMPARED_FROM_S = 1.0  # before that, importers may differ in how they initialize
 TOLERANCE_MPS = 1e-2
-FIRST, SECOND = "A2", "B1"  # learned; drives what was learned
+ON_PYPI = pytest.mark.skipif(sys.platform == "darwin", reason="no such importers for macOS on PyPI")
+
+
+class Trial(NamedTuple):
+    """Two drives for ``seconds`` with the FMUs in ``folder``: the second follows the first."""
+
+    folder: Path
+    fmus: Mapping[str, Fmu]
+    first: str
+    second: str
+    seconds: float
+
+
+@pytest.fixture(scope="module", params=["python", "native"])
+def trial(request: pytest.FixtureRequest) -> Trial:
+    """Native FMUs are quick enough for nearly the whole road."""
+    native = "native_" if request.param == "native" else ""
+    folder = request.getfixturevalue(f"{native or 'fmu_'}folder")
+    fmus = request.getfixturevalue(f"{native}fmus")
+    return Trial(folder, fmus, "A2", *(("B2", 170.0) if native else ("B1", 30.0)))
 
 
 def stored(folder: Path) -> StoredProfile:
@@ -37,35 +59,35 @@ def stored(folder: Path) -> StoredProfile:
 
 
 @pytest.fixture(scope="module")
-def lesson(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def lesson(trial: Trial, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the store in which our first drive is learned."""
     return tmp_path_factory.mktemp("lesson")
 
 
 @pytest.fixture(scope="module")
 def speeds(
-    fmus: Mapping[str, Fmu], lesson: Path, tmp_path_factory: pytest.TempPathFactory
+    trial: Trial, lesson: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> dict[str, FloatArray]:
     """Return our speeds at the communication points of both drives."""
-    found = {}
-    found[FIRST] = driven(fmus, FIRST, lesson)
+    found = {trial.first: driven(trial, trial.first, lesson)}
     copy = tmp_path_factory.mktemp("second")
-    found[SECOND] = driven(fmus, SECOND, shutil.copytree(lesson, copy / "store"))
-    return found
+    store = shutil.copytree(lesson, copy / "store")
+    return {**found, trial.second: driven(trial, trial.second, store)}
 
 
-def driven(fmus: Mapping[str, Fmu], phase: str, store: Path) -> FloatArray:
+def driven(trial: Trial, phase: str, store: Path) -> FloatArray:
     values = start_values(PHASES[phase], list(PHASES).index(phase))
     values["pldf"]["profile_store"] = str(store)
-    recording = drive(fmus, values, Course(length_m=30.0 * SECONDS, step_s=STEP_S)).recording
-    assert recording["time_s"][-1] > SECONDS
+    length_m = min(30.0 * trial.seconds, packed_route(0).nodes - 1.0)
+    recording = drive(trial.fmus, values, Course(length_m, step_s=STEP_S)).recording
+    assert recording["time_s"][-1] > trial.seconds
     return recording["speed_mps"]
 
 
-def run(importer: str, package: Path, store: Path, out: Path) -> FloatArray:
-    """Return times and speeds after each step of ``package`` in an importer."""
-    script = Path(__file__).with_name("ssp_masters.py")
-    command = [sys.executable, str(script), importer, str(package), str(SECONDS), str(out)]
+def run(arguments: list[object], store: Path, out: Path) -> FloatArray:
+    """Return what a script for importers writes into ``out``."""
+    script, *rest = arguments
+    command = [sys.executable, str(FOLDER / str(script)), *map(str, rest), str(out)]
     environment = {**os.environ, "PLDF_PROFILE_STORE": str(store)}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
@@ -73,30 +95,53 @@ def run(importer: str, package: Path, store: Path, out: Path) -> FloatArray:
     return rows
 
 
-@pytest.mark.skipif(sys.platform == "darwin", reason="no such importers for macOS on PyPI")
+@ON_PYPI
 @pytest.mark.parametrize("importer", IMPORTERS)
 def test_the_same_drives_in_another_importer(
-    importer: str, fmu_folder: Path, speeds: dict[str, FloatArray], lesson: Path, tmp_path: Path
+    importer: str, trial: Trial, speeds: dict[str, FloatArray], lesson: Path, tmp_path: Path
 ) -> None:
-    stores = {FIRST: tmp_path / "first", SECOND: shutil.copytree(lesson, tmp_path / "second")}
-    for phase, store in stores.items():
-        package = fmu_folder / f"study_{phase}.ssp"
-        rows = run(importer, package, store, tmp_path / f"{phase}.npy")
+    first, second = tmp_path / "first", shutil.copytree(lesson, tmp_path / "second")
+    for phase, store in ((trial.first, first), (trial.second, second)):
+        package = trial.folder / f"study_{phase}.ssp"
+        arguments = ["ssp_masters.py", importer, package, trial.seconds]
+        rows = run(arguments, store, tmp_path / f"{phase}.npy")
         step = np.rint(rows[:, 0] / STEP_S).astype(int)
         assert np.array_equal(step, np.arange(1, len(step) + 1))
-        assert len(step) >= round(SECONDS / STEP_S)
+        assert len(step) >= round(trial.seconds / STEP_S)
         difference = np.abs(rows[:, 1] - speeds[phase][step])[rows[:, 0] >= COMPARED_FROM_S]
         print(f"{importer}, {phase}: at most {np.max(difference):.1e} m/s apart")
         assert np.max(difference) < TOLERANCE_MPS
-    ours, theirs = stored(lesson).iteration(1), stored(stores[FIRST]).iteration(1)
-    # Their drive ends after 30 s, ours a little later: compared is where both had driven.
+    ours, theirs = stored(lesson).iteration(1), stored(first).iteration(1)
+    # Their drive ends before ours: compared is where both had driven.
     assert np.max(np.abs(theirs.learned_mps - ours.learned_mps)[:500]) < TOLERANCE_MPS
-    assert len(stored(stores[SECOND]).iterations) == 2
+    assert len(stored(second).iterations) == 2
 
 
 def test_what_was_learned_shows_in_the_second_drive(
-    speeds: dict[str, FloatArray], lesson: Path
+    trial: Trial, speeds: dict[str, FloatArray], lesson: Path
 ) -> None:
-    steps = round(SECONDS / STEP_S)
-    assert np.max(np.abs(speeds[FIRST][:steps] - speeds[SECOND][:steps])) > 0.5
+    steps = round(trial.seconds / STEP_S)
+    assert np.max(np.abs(speeds[trial.first][:steps] - speeds[trial.second][:steps])) > 0.5
     assert np.max(np.abs(stored(lesson).iteration(1).learned_mps - stored(lesson).base_mps)) > 1.0
+
+
+@ON_PYPI
+@pytest.mark.parametrize("importer", ["libcosim", "ecos"])
+def test_a_native_fmu_alone_in_another_importer(
+    importer: str, native_folder: Path, tmp_path: Path
+) -> None:
+    fmu = native_folder / "AdaptivePLDF.fmu"
+    rows = run(["lone_fmu.py", importer, fmu], tmp_path, tmp_path / "rows.npy")
+    slave = Host(fmu, tmp_path / "unpacked").instantiate().start()
+    expected = []
+    for k in range(lone_fmu.STEPS):
+        reals, resume = lone_fmu.inputs(k)
+        given = dict(zip(lone_fmu.REALS_IN, reals, strict=True))
+        slave.set(**{name.replace(".", "__"): value for name, value in given.items()})
+        slave.set(**{lone_fmu.SWITCH.replace(".", "__"): resume})
+        slave.fmu.doStep(k * STEP_S, STEP_S)
+        expected.append([slave.get(name) for name in lone_fmu.REALS_OUT])
+    slave.free()
+    assert np.ptp(np.array(expected)[:, 0]) > 0.5
+    # libcosim counts time in nanoseconds, so its steps are not quite ours.
+    np.testing.assert_allclose(rows, expected, rtol=0.0, atol=1e-12)
