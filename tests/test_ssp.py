@@ -16,7 +16,7 @@ from pldf.fmi.packing import ssp
 from pldf.instance import ModelError
 from pldf.kernel.codes import MODE
 from pldf.study.fmu import Fmu
-from pldf.study.master import PARTS, connections
+from pldf.study.master import PARTS, connections, unpacked
 from pldf.study.packages import sources, start_values, write_packages
 from pldf.study.phases import PHASES
 from pyssp_standard.ssp import SSP
@@ -31,26 +31,33 @@ NS = {
 KINDS = ("Real", "Integer", "Boolean")
 
 
+@pytest.fixture(scope="module", params=["fmu_folder", "native_folder"])
+def folder(request: pytest.FixtureRequest) -> Path:
+    """Return a folder with FMUs, Python ones or native ones, and the packages of them."""
+    found: Path = request.getfixturevalue(request.param)
+    return found
+
+
 @pytest.fixture(params=PHASES)
-def package(request: pytest.FixtureRequest, fmu_folder: Path) -> Path:
-    return fmu_folder / f"study_{request.param}.ssp"
+def package(request: pytest.FixtureRequest, folder: Path) -> Path:
+    return folder / f"study_{request.param}.ssp"
 
 
 @pytest.fixture(scope="module")
-def variables(fmu_folder: Path) -> dict[str, dict[str, Any]]:
+def variables(folder: Path) -> dict[str, dict[str, Any]]:
     """Return what the FMUs themselves say of their variables, by part and name."""
     return {
         part: {
             variable.name: variable
-            for variable in read_model_description(fmu_folder / f"{fmu}.fmu").modelVariables
+            for variable in read_model_description(folder / f"{fmu}.fmu").modelVariables
         }
         for part, fmu in PARTS.items()
     }
 
 
 @pytest.fixture(scope="module")
-def structure(fmu_folder: Path) -> Any:
-    with zipfile.ZipFile(fmu_folder / "study_A1.ssp") as archive:
+def structure(folder: Path) -> Any:
+    with zipfile.ZipFile(folder / "study_A1.ssp") as archive:
         return etree.fromstring(archive.read(ssp.STRUCTURE))
 
 
@@ -62,6 +69,12 @@ def test_sources_in_the_repository_are_what_is_packed(fmus: dict[str, Fmu]) -> N
         if path.is_file()
     }
     assert there == sources(fmus)
+
+
+def test_packages_of_native_fmus_say_the_same(
+    fmus: dict[str, Fmu], native_fmus: dict[str, Fmu]
+) -> None:
+    assert sources(native_fmus) == sources(fmus)
 
 
 def test_packages_hold_the_fmus_and_the_sources(package: Path) -> None:
@@ -76,13 +89,12 @@ def test_packages_hold_the_fmus_and_the_sources(package: Path) -> None:
     assert members == {}
 
 
-def test_packages_are_the_same_bytes_on_each_build(
-    fmu_folder: Path, fmus: dict[str, Fmu], tmp_path: Path
-) -> None:
+def test_packages_are_the_same_bytes_on_each_build(folder: Path, tmp_path: Path) -> None:
     for fmu in PARTS.values():
-        (tmp_path / f"{fmu}.fmu").write_bytes((fmu_folder / f"{fmu}.fmu").read_bytes())
-    for path in write_packages(tmp_path, fmus):
-        assert path.read_bytes() == (fmu_folder / path.name).read_bytes()
+        (tmp_path / f"{fmu}.fmu").write_bytes((folder / f"{fmu}.fmu").read_bytes())
+    with unpacked(tmp_path) as fmus:
+        for path in write_packages(tmp_path, fmus):
+            assert path.read_bytes() == (folder / path.name).read_bytes()
 
 
 def test_connectors_are_as_in_the_fmus_and_all_inputs_are_fed_once(
@@ -134,8 +146,8 @@ def test_the_structure_is_flat_and_says_how_to_step(structure: Any) -> None:
         assert structure.find(f".//ssd:{gone}", NS) is None
 
 
-def test_prefixes_are_literal(fmu_folder: Path) -> None:
-    with zipfile.ZipFile(fmu_folder / "study_A1.ssp") as archive:
+def test_prefixes_are_literal(folder: Path) -> None:
+    with zipfile.ZipFile(folder / "study_A1.ssp") as archive:
         assert b"<ssd:SystemStructureDescription " in archive.read(ssp.STRUCTURE)
         assert b"<ssv:ParameterSet " in archive.read("resources/pldf.ssv")
 

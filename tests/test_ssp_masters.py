@@ -126,13 +126,14 @@ def test_what_was_learned_shows_in_the_second_drive(
 
 
 @ON_PYPI
-@pytest.mark.parametrize("importer", ["libcosim", "ecos"])
+@pytest.mark.parametrize(("importer", "place"), [("libcosim", ""), ("ecos", ""), ("ecos", "fmi3")])
 def test_a_native_fmu_alone_in_another_importer(
-    importer: str, native_folder: Path, tmp_path: Path
+    importer: str, place: str, native_folder: Path, tmp_path: Path
 ) -> None:
-    fmu = native_folder / "AdaptivePLDF.fmu"
+    """In FMI 2.0 and, where the importer knows it, in FMI 3.0."""
+    fmu = native_folder / place / "AdaptivePLDF.fmu"
     rows = run(["lone_fmu.py", importer, fmu], tmp_path, tmp_path / "rows.npy")
-    slave = Host(fmu, tmp_path / "unpacked").instantiate().start()
+    slave = Host(native_folder / fmu.name, tmp_path / "unpacked").instantiate().start()
     expected = []
     for k in range(lone_fmu.STEPS):
         reals, resume = lone_fmu.inputs(k)
