@@ -18,9 +18,11 @@ from ..fmi.packing.description3 import model_description3
 from ..fmi.packing.documentation import as_machine_code, document
 from ..fmi.slave import LOG_CATEGORIES
 from ..kernel.signals import Signal
+from .language import check_language
 from .linking import FLAGS, HEADERS, link, universal
 from .model import NativeModel
 from .objects import compile_objects
+from .symbols import check_library
 from .table import header, signals, source
 from .targets import TARGETS
 
@@ -81,11 +83,12 @@ def build_native(
         The paths of the archives.
 
     Raises:
-        ValueError: numba refuses the kernel, or a library cannot be linked.
+        ValueError: the kernel cannot be compiled, or a library not be linked or loaded anywhere.
     """
     module, _, name = recipe.model.partition(":")
     model: NativeModel = getattr(importlib.import_module(module), name)
-    tell(f"compile the kernel for {', '.join(targets)}")
+    tell(f"compile the kernel for {len(targets)} platforms")
+    check_language(model.modules, model.record)
     objects = compile_objects(recipe.model, targets)
     contents = [_contents(recipe, model, standard, targets) for standard in (_FMI2, _FMI3)]
     inner = {**_inner(recipe, model), **objects}
@@ -97,7 +100,9 @@ def build_native(
         for target in targets:
             tell(f"link {target}")
             (folder / f"{target}.o").write_bytes(objects[target])
-            libraries[target] = link(folder, recipe.runtime, target, model.name, tell)
+            library = link(folder, recipe.runtime, target, model.name, tell)
+            check_library(library)
+            libraries[target] = library.read_bytes()
     ready = (
         (_FMI2, with_guid(contents[0], guid), _binaries2(model.name, libraries)),
         (_FMI3, with_guid(contents[1], token), _binaries3(model.name, libraries)),

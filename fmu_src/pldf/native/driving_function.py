@@ -47,6 +47,8 @@ def _refresh(record: Any, block: Any, nodes: int, rows: int, step_s: float) -> N
 
 
 def _step(record: Any, block: Any, nodes: int, rows: int, step_s: float) -> None:
+    if nodes < 2:  # never; but now the compiler knows that the last node's index is not negative
+        return
     st = record_at(record)
     route = columns(RouteArrays, block, 0, nodes)
     profile = columns(ProfileArrays, block, PROFILE_AT * nodes, nodes)

@@ -23,8 +23,8 @@ _FAT_MAGIC: Final = 0xCAFEBABE
 _FAT_ALIGNMENT: Final = 14  # as a power of two: pages of macOS on ARM
 
 
-def link(folder: Path, runtime: Path, target: str, name: str, tell: Callable[[str], None]) -> bytes:
-    """Link a model with the C runtime; return the library.
+def link(folder: Path, runtime: Path, target: str, name: str, tell: Callable[[str], None]) -> Path:
+    """Link a model with the C runtime; return the library, in a folder of its own.
 
     Args:
         folder: has ``table.h``, ``table.c`` and ``TARGET.o``; zig runs there, so that neither the
@@ -49,7 +49,7 @@ def link(folder: Path, runtime: Path, target: str, name: str, tell: Callable[[st
     problem = _run(program, folder, lambda: tell(f"zig compiles the C library of {target} once"))
     if problem:
         raise ValueError(f"linking for {target} failed:\n{problem[-2000:]}")
-    return (folder / library).read_bytes()
+    return folder / library
 
 
 def _run(program: Sequence[str], folder: Path, late: Callable[[], None]) -> str:

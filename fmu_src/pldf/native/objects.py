@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import hashlib
 import importlib
+import linecache
 import os
 import re
 import subprocess
@@ -29,11 +30,13 @@ import numba
 
 from ..compiled import OPTIONS, compile_modules, pack, user_cache
 from ..disk import replace_file
+from .symbols import needed_by_object
 from .targets import TARGETS
 
-# What LLVM may call in place of a loop or an instruction that the target lacks.
-LIBRARY: Final = frozenset({"floor", "memcpy", "memmove", "memset", "sqrt"})
-_DECLARED: Final = re.compile(r'declare [^@]*@"?([\w.$]+)')
+# What LLVM may call in place of a loop or an instruction that the target lacks (bzero: macOS).
+LIBRARY: Final = frozenset({"__bzero", "bzero", "floor", "memcpy", "memmove", "memset", "sqrt"})
+_PLACE: Final = re.compile(r"^During: .* at (\S.*) \((\d+)\)$", re.MULTILINE)
+_RECORD_TYPE: Final = re.compile(r"Record\(\[.*?\], \d+, \w+\)")  # as numba writes it, at length
 
 
 def compile_objects(model: str, targets: Sequence[str]) -> dict[str, bytes]:
@@ -42,20 +45,22 @@ def compile_objects(model: str, targets: Sequence[str]) -> dict[str, bytes]:
     What was compiled from the same sources before is taken from the user's cache.
 
     Raises:
-        ValueError: numba or the check refuses the kernel; the text names the line.
+        ValueError: numba or the check refuses the kernel; the text says where, if numba does.
     """
     cache = user_cache() / f"native-{_digest(model)}"
-    missing = [target for target in targets if not (cache / f"{target}.o").is_file()]
+    kept = {target: cache / f"{target}.o" for target in targets}
+    objects = {target: path.read_bytes() for target, path in kept.items() if path.is_file()}
+    missing = [target for target in targets if target not in objects]
     if not missing:
-        return {target: (cache / f"{target}.o").read_bytes() for target in targets}
+        return objects
     with tempfile.TemporaryDirectory(prefix="native_") as folder:
-        _compile(model, Path(folder), targets)
-        objects = {target: Path(folder, f"{target}.o").read_bytes() for target in targets}
+        _compile(model, Path(folder), missing)
+        made = {target: Path(folder, f"{target}.o").read_bytes() for target in missing}
     with suppress(OSError):  # compiled anew next time: slower, not wrong
         cache.mkdir(parents=True, exist_ok=True)
-        for target, data in objects.items():
+        for target, data in made.items():
             replace_file(cache / f"{target}.o", data)
-    return objects
+    return {**objects, **made}
 
 
 def _compile(model: str, folder: Path, targets: Sequence[str]) -> None:
@@ -67,7 +72,7 @@ def _compile(model: str, folder: Path, targets: Sequence[str]) -> None:
         program, env={**kept, **generic}, capture_output=True, text=True, check=False
     )
     if done.returncode != 0:
-        raise ValueError(f"the kernel cannot be compiled:\n{done.stderr.strip()}")
+        raise ValueError(f"the kernel cannot be compiled:\n  {done.stderr.strip()}")
 
 
 def _digest(model: str) -> str:
@@ -130,8 +135,9 @@ def _emit(texts: Sequence[str], target: str, entries: Sequence[str]) -> bytes:
     options = llvm.create_pipeline_tuning_options(speed_level=3)
     builder = llvm.create_pass_builder(machine, options)
     builder.getModulePassManager().run(whole, builder)
-    _check(str(whole))
-    return bytes(machine.emit_object(whole))
+    data = bytes(machine.emit_object(whole))
+    _check(data)
+    return data
 
 
 def _retarget(text: str, triple: str, machine: Any) -> str:
@@ -141,30 +147,47 @@ def _retarget(text: str, triple: str, machine: Any) -> str:
 
 
 def _hide_all_but(module: Any, visible: set[str]) -> None:
-    for thing in (*module.functions, *module.global_variables):
-        if thing.name in visible:
-            thing.visibility = "hidden"  # for the C runtime, not for the host
-        elif not thing.is_declaration:
-            thing.linkage = "internal"
-    missing = visible - {f.name for f in module.functions if not f.is_declaration}
+    defined = [t for t in (*module.functions, *module.global_variables) if not t.is_declaration]
+    missing = visible - {thing.name for thing in defined}
     if missing:
         raise ValueError(f"entry points {', '.join(sorted(missing))} were not compiled")
+    for number, thing in enumerate(defined):
+        if thing.name in visible:
+            thing.visibility = "hidden"  # for the C runtime, not for the host
+        else:
+            thing.linkage = "internal"
+            if thing.is_function:  # what is known in one function helps in the others
+                thing.add_function_attribute("alwaysinline")
+            thing.name = f"inner_{number}"  # numba's own names hold the record's whole layout
 
 
-def _check(text: str) -> None:
-    """Refuse code that would need Python or numba at run time."""
-    names = {n for n in _DECLARED.findall(text) if not n.startswith("llvm.")}
-    names |= set(re.findall(r"^@\"?([\w.$]+)\"? = external", text, re.MULTILINE))
-    if names - LIBRARY:
+def _check(data: bytes) -> None:
+    """Refuse code that would need Python, numba, or what differs between C libraries."""
+    names = needed_by_object(data) - LIBRARY
+    if names:
         raise ValueError(
-            f"it needs {', '.join(sorted(names - LIBRARY))}: keep to + - * / sqrt floor abs, "
+            f"it needs {', '.join(sorted(names))}: keep to + - * / sqrt floor abs, "
             "comparisons, records and arrays (pldf/kernel/__init__.py)"
         )
+
+
+def _reason(error: Exception) -> str:
+    """Return file and line of the kernel, and what numba says of it, from its long message."""
+    text = _RECORD_TYPE.sub("record", str(error))
+    lines = [line.strip() for line in text.splitlines()]
+    told = [x for x in lines if x and not x.startswith(("Failed in ", "During: ", "File "))]
+    inner = str(Path(numba.__file__).parent)
+    calls = [(f, int(n)) for f, n in _PLACE.findall(text) if not f.startswith(inner)]
+    if not calls:
+        return text
+    file, number = calls[0]
+    more = [x for x in told[1:3] if x.startswith(">>>")]
+    said = " ".join([*told[:1], *more])
+    return f"{file}:{number}: {said}\n    {linecache.getline(file, number).strip()}"
 
 
 if __name__ == "__main__":
     try:
         main(sys.argv[1], sys.argv[2], sys.argv[3:])
     except Exception as error:
-        # The last lines of numba's text name file and line of the kernel.
-        sys.exit("\n".join(str(error).strip().splitlines()[-12:]))
+        sys.exit(_reason(error))
