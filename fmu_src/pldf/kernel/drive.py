@@ -12,8 +12,8 @@ from .codes import (
     LEARN_OFF,
     XY,
 )
-from .hmi import reason, update_outlook
-from .interpolation import cell_at, value_at
+from .hmi import reason
+from .interpolation import place_at, value_at, value_of
 from .lever import (
     CANCEL_CONTACT,
     RESUME_CONTACT,
@@ -37,7 +37,7 @@ from .modes import (
 )
 from .recorder import record_sample
 from .state import PldfState
-from .tracking import target_speed, update_request
+from .tracking import target_of, update_request
 
 # Inputs beyond these (m, m/s, m/s2, pedal travel) are a fault of the wiring, not a drive. A
 # comparison with NaN is false, so NaN is caught by the same test.
@@ -137,19 +137,30 @@ def update_mode_and_set_speed(st: PldfState, route: RouteArrays, profile: Profil
 def update_outputs(st: PldfState, route: RouteArrays, profile: ProfileArrays) -> None:
     """Fill the outputs for the position ``ahead_m`` behind the last sample."""
     s_m = st.s_m + st.ahead_m
-    automatic = automatic_set_speed(route, profile, s_m)
+    place = place_at(len(route.limit_mps), s_m)
+    cell = place[0]
+    limit = route.limit_mps[cell]
+    automatic = automatic_set_speed(route, profile, cell)
     manual = st.manual_set_mps if s_m < st.manual_end_m else 0.0
+    target = target_of(st, route, profile, s_m, place)
+    base = value_of(profile.base_mps, place)
+    learned = value_of(profile.learned_mps, place)
+    why = reason(st, route, profile, place)
+    turn_m = profile.turn_m[cell]
+    settled = value_at(profile.learned_mps, turn_m)
+    # All is read before the first is written: the compiler must take any of them for the other.
     st.function_active = 1 if st.mode in (ACTIVE, GAS_OVERRIDE) else 0
-    st.target_speed_mps = target_speed(st, route, profile, s_m)
-    st.base_speed_mps = value_at(profile.base_mps, s_m)
+    st.target_speed_mps = target
+    st.base_speed_mps = base
     st.set_speed_mps = manual if manual > 0.0 else automatic
     st.set_speed_offset_mps = st.set_speed_mps - automatic
-    st.limit_mps = route.limit_mps[cell_at(len(route.limit_mps), s_m)]
+    st.limit_mps = limit
     if st.total_ns > 0:
         st.rate_pedal = st.pedal_ns / st.total_ns
         st.rate_set_speed = st.set_speed_ns / st.total_ns
         st.rate_combined = st.combined_ns / st.total_ns
-    st.hmi_reason = reason(st, route, profile, s_m)
-    st.hmi_learned_delta_mps = value_at(profile.learned_mps, s_m) - st.base_speed_mps
+    st.hmi_reason = why
+    st.hmi_learned_delta_mps = learned - base
     st.hmi_learning = 1 if learns(st) and st.eligible != 0 else 0
-    update_outlook(st, profile, s_m)
+    st.hmi_next_speed_mps = settled
+    st.hmi_next_distance_m = max(turn_m - s_m, 0.0)

@@ -21,7 +21,7 @@ from .codes import (
     REASON_STANDBY,
     STANDBY,
 )
-from .interpolation import cell_at, value_at
+from .interpolation import Place, value_of
 from .state import PldfState
 
 PHASE_MPS2 = 0.05  # weaker accelerations of the profile count as cruising
@@ -52,7 +52,7 @@ def find_limit_ends(limit: Floats, limit_end_m: Floats) -> None:
         limit_end_m[i] = limit_end_m[i + 1] if limit[i] == limit[i + 1] else i + 1.0
 
 
-def reason(st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m: float) -> int:
+def reason(st: PldfState, route: RouteArrays, profile: ProfileArrays, place: Place) -> int:
     """Return the code of the reason for the present speed."""
     if st.mode == FAULT:
         return REASON_FAULT
@@ -62,15 +62,15 @@ def reason(st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m: float
         return REASON_OVERRIDE
     if st.manual_set_mps > 0.0:
         return REASON_MANUAL_SET
-    return _reason_of_profile(st, route, profile, s_m)
+    return _reason_of_profile(st, route, profile, place)
 
 
 def _reason_of_profile(
-    st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m: float
+    st: PldfState, route: RouteArrays, profile: ProfileArrays, place: Place
 ) -> int:
-    i = cell_at(len(route.limit_mps), s_m)
-    learned = value_at(profile.learned_mps, s_m)
-    delta = learned - value_at(profile.planned_mps, s_m)
+    i = place[0]
+    learned = value_of(profile.learned_mps, place)
+    delta = learned - value_of(profile.planned_mps, place)
     if delta > 0.0 and _at_curve_bound(st, route.curvature_per_m[i], learned):
         return REASON_CAP_CURVE
     if delta > 0.0 and learned > route.limit_mps[i] + st.learning_over_limit_max_mps - CAP_MPS:
@@ -100,10 +100,3 @@ def _reason_of_plan(route: RouteArrays, profile: ProfileArrays, i: int, speed: f
     if profile.open_mps[i] < set_speed - CAP_MPS:
         return REASON_CURVE
     return REASON_LIMIT
-
-
-def update_outlook(st: PldfState, profile: ProfileArrays, s_m: float) -> None:
-    """Set the next speed that the profile settles at, and the distance to it."""
-    turn = value_at(profile.turn_m, float(cell_at(len(profile.turn_m), s_m)))
-    st.hmi_next_speed_mps = value_at(profile.learned_mps, turn)
-    st.hmi_next_distance_m = max(turn - s_m, 0.0)

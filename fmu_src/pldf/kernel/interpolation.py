@@ -4,24 +4,35 @@ from __future__ import annotations
 
 from .arrays import Floats
 
+# Where a position lies: node before it, node behind it, share of the way between them. At the ends
+# of the route and beyond, both are the node at that end. Several arrays can be read at one place.
+Place = tuple[int, int, float]
+
+
+def place_at(n: int, s_m: float) -> Place:
+    """Return the place of position ``s_m`` on a route of ``n`` nodes."""
+    i = int(s_m)
+    if s_m <= 0.0 or i < 0:  # the second says to the compiler that no index is negative
+        return 0, 0, 0.0
+    if i >= n - 1:
+        return n - 1, n - 1, 0.0
+    return i, i + 1, s_m - i
+
 
 def cell_at(n: int, s_m: float) -> int:
     """Return the index of the cell that holds position ``s_m``, kept inside ``0 .. n - 1``."""
-    if s_m <= 0.0:
-        return 0
-    if s_m >= n - 1:
-        return n - 1
-    return int(s_m)
+    return place_at(n, s_m)[0]
+
+
+def value_of(values: Floats, place: Place) -> float:
+    """Return ``values`` (one per node) at ``place``, linear between nodes."""
+    before, behind, share = place
+    return values[before] + share * (values[behind] - values[before])
 
 
 def value_at(values: Floats, s_m: float) -> float:
     """Return ``values`` (one per node) at ``s_m``, linear between nodes, constant outside."""
-    if s_m <= 0.0:
-        return values[0]
-    i = int(s_m)
-    if i >= len(values) - 1:
-        return values[len(values) - 1]
-    return values[i] + (s_m - i) * (values[i + 1] - values[i])
+    return value_of(values, place_at(len(values), s_m))
 
 
 def position_of(rising: Floats, value: float, start: int, end: int) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .arrays import ProfileArrays, RouteArrays
 from .codes import FAULT, OFF
-from .interpolation import cell_at
+from .interpolation import cell_at, value_at
 from .state import PldfState
 
 RESUME_CONTACT = 1
@@ -39,10 +39,9 @@ def closed_contacts(st: PldfState) -> int:
     return closed
 
 
-def automatic_set_speed(route: RouteArrays, profile: ProfileArrays, s_m: float) -> float:
-    """Return legal limit plus learned offset at ``s_m``, in m/s."""
-    i = cell_at(len(route.limit_mps), s_m)
-    return route.limit_mps[i] + profile.offset_mps[i]
+def automatic_set_speed(route: RouteArrays, profile: ProfileArrays, cell: int) -> float:
+    """Return legal limit plus learned offset in ``cell``, in m/s."""
+    return route.limit_mps[cell] + profile.offset_mps[cell]
 
 
 def update_set_speed(
@@ -54,10 +53,12 @@ def update_set_speed(
     tip = _tip(st, closed)
     if tip == 0.0 or st.mode in (OFF, FAULT):
         return
-    automatic = automatic_set_speed(route, profile, st.s_m)
+    cell = cell_at(len(route.limit_mps), st.s_m)
+    automatic = automatic_set_speed(route, profile, cell)
     wanted = (st.manual_set_mps if st.manual_set_mps > 0.0 else automatic) + tip
     wanted = min(max(wanted, st.control_set_speed_min_mps), st.control_set_speed_max_mps)
-    st.manual_end_m = profile.limit_end_m[cell_at(len(profile.limit_end_m), st.s_m)]
+    st.manual_end_m = profile.limit_end_m[cell]
+    st.manual_behind_mps = value_at(profile.learned_mps, st.manual_end_m)
     st.manual_set_mps = wanted
     if abs(wanted - automatic) < SAME_SPEED_MPS:
         st.manual_set_mps = 0.0

@@ -98,6 +98,7 @@ class PldfState(Outputs):
     lever_free_ns: int = 0
     manual_set_mps: float = 0.0  # 0 = none
     manual_end_m: float = 0.0
+    manual_behind_mps: float = 0.0  # the profile's speed there
     # recorder: the last two knots of the resampled drive, and the sample before this one
     samples: int = 0
     from_s_m: float = 0.0

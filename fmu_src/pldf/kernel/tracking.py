@@ -11,7 +11,7 @@ from math import sqrt
 
 from .arrays import ProfileArrays, RouteArrays
 from .codes import ACTIVE, FAULT, GAS_OVERRIDE
-from .interpolation import value_at
+from .interpolation import Place, place_at, value_of
 from .lever import automatic_set_speed
 from .state import PldfState
 
@@ -24,16 +24,23 @@ def target_speed(st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m:
     approached at the planner's deceleration, and places learned slower stay slower by as much; but
     a set speed that was raised never makes the car slower than its profile.
     """
-    learned = value_at(profile.learned_mps, s_m)
+    return target_of(st, route, profile, s_m, place_at(len(profile.learned_mps), s_m))
+
+
+def target_of(
+    st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m: float, place: Place
+) -> float:
+    """Return the same for ``s_m``, whose place is known."""
+    learned = value_of(profile.learned_mps, place)
     if st.manual_set_mps <= 0.0 or s_m >= st.manual_end_m:
         return learned
-    if st.manual_set_mps <= automatic_set_speed(route, profile, s_m):
+    if st.manual_set_mps <= automatic_set_speed(route, profile, place[0]):
         return min(learned, st.manual_set_mps)
-    speed = min(st.manual_set_mps, max(learned, value_at(profile.open_mps, s_m)))
-    behind = value_at(profile.learned_mps, st.manual_end_m)
+    speed = min(st.manual_set_mps, max(learned, value_of(profile.open_mps, place)))
+    behind = st.manual_behind_mps
     approach = behind * behind - 2.0 * st.planner_accel_min_mps2 * (st.manual_end_m - s_m)
     speed = min(speed, max(learned, sqrt(approach)))
-    slower = learned - value_at(profile.planned_mps, s_m)
+    slower = learned - value_of(profile.planned_mps, place)
     return max(speed + min(slower, 0.0), learned)
 
 
