@@ -87,7 +87,7 @@ def build_native(
     """
     module, _, name = recipe.model.partition(":")
     model: NativeModel = getattr(importlib.import_module(module), name)
-    tell(f"compile the kernel for {len(targets)} platforms")
+    tell("compile the kernel")
     check_language(model.modules, model.record)
     objects = compile_objects(recipe.model, targets)
     contents = [_contents(recipe, model, standard, targets) for standard in (_FMI2, _FMI3)]
