@@ -93,7 +93,9 @@ static bool make_one_folder(const char *path, char *why) {
 
 static bool take_lock(int file, const char *path) {
     (void)path;
-    return _locking(file, _LK_NBLCK, 1) == 0;
+    if (_locking(file, _LK_NBLCK, 1) == 0) return true;
+    if (GetLastError() == ERROR_LOCK_VIOLATION) errno = EACCES; /* wine leaves it as it was */
+    return false;
 }
 
 static void wait_ms(int ms) { Sleep((DWORD)ms); }
