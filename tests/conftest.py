@@ -2,36 +2,16 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from filelock import FileLock
-from fmi_host import Host, Slave
-from pldf.fmi.packing.builder import build
+from built_once import once
+from native_hosts import Hosts, native_archives
 from pldf.study.fmu import Fmu
 from pldf.study.master import unpacked
-from pushed_cart import cart_recipe
 
 import build_fmu
-
-TESTS = Path(__file__).parent
-
-
-def once(factory: pytest.TempPathFactory, name: str, build: Callable[[Path], None]) -> Path:
-    """Return a folder that one of all xdist workers lets ``build`` fill; the others wait for it."""
-    base = factory.getbasetemp()
-    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / name
-    stamp = folder.with_suffix(".built")
-    with FileLock(folder.with_suffix(".lock")):
-        if not stamp.is_file():
-            folder.mkdir(exist_ok=True)  # another worker may have failed here
-            build(folder)
-            stamp.touch()
-    return folder
 
 
 @pytest.fixture(scope="session")
@@ -53,15 +33,8 @@ def fmus(fmu_folder: Path) -> Iterator[dict[str, Fmu]]:
 
 @pytest.fixture(scope="session")
 def native_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder with the native FMUs of this platform, validated by fmpy."""
-    pytest.importorskip("ziglang", reason="needs the extra: pip install -e .[native]")
-    if sys.platform != "linux":
-        pytest.skip("builds and loads the linux64 FMUs")
-
-    def build(folder: Path) -> None:
-        assert build_fmu.main(["--native", "--target", "linux64", "--out", str(folder)]) == 0
-
-    return once(tmp_path_factory, "dist_native", build) / "native"
+    """Return a folder with the native FMUs of this platform; those for FMI 3.0 in ``fmi3``."""
+    return native_archives(tmp_path_factory, "linux64")
 
 
 @pytest.fixture(scope="session")
@@ -72,33 +45,6 @@ def native_fmus(native_folder: Path) -> Iterator[dict[str, Fmu]]:
 
 
 @pytest.fixture(scope="session")
-def c_host(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a simulator without Python."""
-    headers = pytest.importorskip("pldf.native.build").HEADERS
-
-    def build(folder: Path) -> None:
-        zig = [sys.executable, "-m", "ziglang", "cc", "-std=gnu11", "-O1", f"-I{headers}"]
-        source, program = str(TESTS / "native_host.c"), str(folder / "native_host")
-        subprocess.run([*zig, source, "-o", program, "-ldl", "-lm"], check=True)
-
-    return once(tmp_path_factory, "host", build) / "native_host"
-
-
-@pytest.fixture(scope="session")
-def cart_fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the FMU of a small model with every kind of variable."""
-    return build(cart_recipe(), tmp_path_factory.mktemp("cart"))
-
-
-@pytest.fixture(scope="session")
-def cart_host(cart_fmu: Path, tmp_path_factory: pytest.TempPathFactory) -> Host:
-    """Return that FMU, unpacked."""
-    return Host(cart_fmu, tmp_path_factory.mktemp("unpacked"))
-
-
-@pytest.fixture
-def cart(cart_host: Host) -> Iterator[Slave]:
-    """Return an instance of it."""
-    slave = cart_host.instantiate()
-    yield slave
-    slave.free()
+def hosts(tmp_path_factory: pytest.TempPathFactory) -> Hosts:
+    """Return the C host and the native FMUs for every platform."""
+    return Hosts(tmp_path_factory)

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import ctypes
 import math
-import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 from fmi_host import Host
-from pldf.function import DrivingFunction
-from pldf.kernel.signals import signals_of
 from pldf.roads import packed_route
 from pldf.study.fmu import Fmu
 from pldf.study.master import drive
@@ -60,47 +55,7 @@ def test_a_loop_of_native_fmus_equals_that_of_python_fmus(
     assert b"iteration 2 " in results[0][1][1]
 
 
-# Everything the function says, step by step
-
-
-def hostile_inputs(k: int) -> dict[str, float]:
-    """Return a drive with pedals, lever, jumps and nonsense."""
-    speed = 22.0 + 3.0 * math.sin(0.001 * k)
-    return {
-        "vehicle_s_m": 0.22 * k + (500.0 if 2000 < k < 2010 else 0.0),
-        "vehicle_speed_mps": math.nan if 3000 < k < 3020 else speed,
-        "vehicle_acceleration_mps2": 0.4 * math.cos(0.01 * k),
-        "driver_gas_pedal": 0.4 if k % 900 > 700 else 0.0,
-        "driver_brake_pedal": 0.3 if k % 1700 > 1600 else 0.0,
-        "lever_resume": int(k % 400 > 390),
-        "lever_up_long": int(k % 650 > 640),
-        "lever_down": int(k % 1050 > 1040),
-        "eligible": int(k % 800 > 40),
-    }
-
-
-def test_every_output_of_every_step_equals_the_source(native_folder: Path) -> None:
-    slave = Host(native_folder / "AdaptivePLDF.fmu").instantiate().start(learn=1)
-    model = DrivingFunction()
-    model.record.learn = 1
-    model.initialize()
-    signals = signals_of(model.record)
-    outputs = {s.name: s.field for s in signals if s.causality == "output"}
-    names = {s.field: s.name.replace(".", "__") for s in signals}
-    codes = set()
-    for k in range(4000):
-        step_s = 0.01 if k % 7 else 0.037
-        inputs = hostile_inputs(k)
-        for field, value in inputs.items():
-            setattr(model.record, field, value)
-        slave.set(**{names[field]: value for field, value in inputs.items()})
-        model.step(step_s)
-        slave.fmu.doStep(0.037 * k, step_s)
-        found = slave.outputs()
-        assert found == {name: getattr(model.record, f) for name, f in outputs.items()}
-        codes.add(found["mode"])
-    assert codes == {1, 2, 3, 4}
-    slave.free()
+# What is read
 
 
 def test_refuses_parameters_and_routes_with_a_reason(native_folder: Path, tmp_path: Path) -> None:
@@ -152,81 +107,7 @@ def test_a_damaged_profile_is_kept_aside(
     slave.free()
 
 
-# A host without Python
-
-
-@pytest.mark.parametrize("name", ["AdaptivePLDF", "LongitudinalVehicle", "ScriptedDriver"])
-def test_c_host(native_folder: Path, c_host: Path, tmp_path: Path, name: str) -> None:
-    """Life cycle, wrong order, instances, states, hostile inputs; and the same bits as in fmpy."""
-    others = [n for n in ("AdaptivePLDF", "LongitudinalVehicle") if n != name][:1]
-    hosts = [Host(native_folder / f"{n}.fmu") for n in (name, *others)]
-    arguments = []
-    for host in hosts:
-        model = host.description.coSimulation.modelIdentifier
-        library = host.folder / "binaries" / "linux64" / f"{model}.so"
-        arguments += [str(library), host.description.guid, f"file://{host.folder}/resources"]
-    inputs, outputs = (reals(hosts[0], causality) for causality in ("input", "output"))
-    environment = {"REALS_IN": listed(inputs), "REALS_OUT": listed(outputs)}
-    done = subprocess.run(
-        [c_host, *arguments],
-        env={"PATH": os.environ["PATH"], **environment},
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    lines = done.stdout.splitlines()
-    assert done.returncode == 0, [*lines[-1:], done.stderr]
-    assert len(lines) == 2000
-    slave = hosts[0].instantiate().start()
-    for k, line in enumerate(lines):
-        values = [float((7 * k + 13 * i) % 97) / 97.0 for i in range(len(inputs))]
-        slave.fmu.setReal(inputs, [0.2 * k, *values[1:]])
-        slave.fmu.doStep(0.01 * k, 0.01)
-        found = np.array(slave.fmu.getReal(outputs))
-        assert found.tobytes() == np.array([float.fromhex(x) for x in line.split()]).tobytes()
-    slave.free()
-    assert list(tmp_path.iterdir()) == []
-
-
-def reals(host: Host, causality: str) -> list[int]:
-    """Return the value references of the Real variables with this causality."""
-    variables = host.description.modelVariables
-    return [v.valueReference for v in variables if (v.type, v.causality) == ("Real", causality)]
-
-
-def listed(references: list[int]) -> str:
-    return ",".join(map(str, references))
-
-
-def test_c_host_learns_what_fmpy_learns(native_folder: Path, c_host: Path, tmp_path: Path) -> None:
-    """With the store from the environment; the second instance saved late and lost nothing."""
-    host = Host(native_folder / "AdaptivePLDF.fmu")
-    inputs, outputs = reals(host, "input"), reals(host, "output")
-    (learn,) = [
-        v.valueReference for v in host.description.modelVariables if v.name == "learn_faithful"
-    ]
-    library = host.folder / "binaries" / "linux64" / "AdaptivePLDF.so"
-    environment = {
-        "REALS_IN": listed(inputs),
-        "REALS_OUT": listed(outputs),
-        "LEARN": str(learn),
-        "PLDF_PROFILE_STORE": "relative/store",
-    }
-    arguments = [c_host, library, host.description.guid, f"file://{host.folder}/resources"]
-    subprocess.run(arguments, env=environment, cwd=tmp_path, capture_output=True, check=True)
-    store = tmp_path / "relative" / "store"
-    slave = host.instantiate().start(learn_faithful=True, profile_store=str(tmp_path / "fmpy"))
-    for k in range(2000):
-        values = [float((7 * k + 13 * i) % 97) / 97.0 for i in range(len(inputs))]
-        slave.fmu.setReal(inputs, [0.2 * k, *values[1:]])
-        slave.fmu.doStep(0.01 * k, 0.01)
-    slave.fmu.terminate()
-    slave.free()
-    (expected,) = (tmp_path / "fmpy").iterdir()
-    late = expected.with_suffix(".conflict-1.pldf").name
-    assert sorted(path.name for path in store.iterdir()) == [late, expected.name]
-    assert (store / expected.name).read_bytes() == expected.read_bytes()
+# The library
 
 
 def test_exports_the_functions_of_fmi_and_nothing_else(native_folder: Path) -> None:
