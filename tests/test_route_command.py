@@ -9,6 +9,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 from pldf import cli
+from pldf.native.prepared import prepared_route
 from pldf.roads import fingerprint, packed_route, read_route, route_arrays
 from pldf.study.figures_route import minutes
 from pldf.study.route_facts import route_facts
@@ -63,6 +64,14 @@ def test_an_exported_route_is_the_same_route(run: Run) -> None:
     assert lines[0][1] == lines[1][1]  # all but the comment with the name
 
 
+def test_a_route_is_prepared_for_native_fmus(run: Run) -> None:
+    status, out, err = run("study", "--export", "out.prepared")
+    assert (status, err) == (0, "")
+    assert out.endswith("written      out.prepared\n")
+    assert Path("out.prepared").read_bytes() == prepared_route(packed_route(0))
+    assert [path.name for path in Path().iterdir()] == ["out.prepared"]
+
+
 @pytest.mark.parametrize("source", ["study", "flat.csv"])
 def test_the_plot_is_a_picture_with_something_on_it(run: Run, source: str) -> None:
     Path("flat.csv").write_text("s_m,curvature_per_m,speed_limit_mps\n0,0,20\n900,0,20\n")
@@ -112,9 +121,12 @@ def test_bad_files_exit_with_1_and_one_or_two_lines(run: Run) -> None:
         assert len(err.splitlines()) <= 2
 
 
-@pytest.mark.parametrize("option", ["--plot", "--export"])
-def test_a_folder_that_does_not_exist_is_bad_input(run: Run, option: str) -> None:
-    status, _, err = run("study", option, "nowhere/road.png")
+@pytest.mark.parametrize(
+    ("option", "name"),
+    [("--plot", "road.png"), ("--export", "road.csv"), ("--export", "road.prepared")],
+)
+def test_a_folder_that_does_not_exist_is_bad_input(run: Run, option: str, name: str) -> None:
+    status, _, err = run("study", option, f"nowhere/{name}")
     assert status == 1
     assert "nowhere" in err
     assert len(err.splitlines()) == 1

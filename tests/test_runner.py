@@ -276,6 +276,7 @@ def test_a_folder_of_others_is_left_alone(
         ["FILE", "--seed", "3"],
         ["FILE", "--set", "wish.offset_mps=1"],
         ["FILE", "--jobs", "0"],
+        ["FILE", "--fmus", "somewhere"],
         ["FILE", "--fmu", "native", "--scheduler", "tcp://nowhere:1"],
     ],
 )

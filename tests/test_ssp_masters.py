@@ -9,6 +9,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
+from zipfile import ZipFile
 
 import lone_fmu
 import numpy as np
@@ -146,3 +147,21 @@ def test_a_native_fmu_alone_in_another_importer(
     assert np.ptp(np.array(expected)[:, 0]) > 0.5
     # libcosim counts time in nanoseconds, so its steps are not quite ours.
     np.testing.assert_allclose(rows, expected, rtol=0.0, atol=1e-12)
+
+
+@ON_PYPI
+def test_a_package_of_fmi_3_fmus_drives_the_same_in_ecos(
+    native_folder: Path, tmp_path: Path
+) -> None:
+    packages = {"fmi2": native_folder / "study_A2.ssp", "fmi3": tmp_path / "study_A2.ssp"}
+    with ZipFile(packages["fmi2"]) as source, ZipFile(packages["fmi3"], "w") as made:
+        for name in source.namelist():
+            fmu = native_folder / "fmi3" / Path(name).name
+            made.writestr(name, fmu.read_bytes() if fmu.suffix == ".fmu" else source.read(name))
+    found = []
+    for version, package in packages.items():
+        arguments = ["ssp_masters.py", "ecos", package, 30.0]
+        rows = run(arguments, tmp_path / version, tmp_path / f"{version}.npy")
+        (profile,) = (tmp_path / version).iterdir()
+        found.append((rows.tobytes(), profile.read_bytes()))
+    assert found[0] == found[1]

@@ -15,6 +15,7 @@ from ..store import StoredProfile
 from ..study.interventions import Rates
 from ..study.phases import PHASES, PUBLISHED, Phase, Setting, choose_route
 from ..study.run import Driven, mean_rates, run_study
+from ..study.which_fmus import USUAL_FOLDER
 from .coupled import (
     NATIVE_IF_GOOD,
     add_coupling,
@@ -63,6 +64,8 @@ def run(options: argparse.Namespace) -> None:
         for name, value in options.usual.items():
             if getattr(options, name) != value:
                 options.refuse(f"{_OF_ONE_DRIVER[name]} is for one driver; write it into FILE")
+        if options.fmus != USUAL_FOLDER and not options.fmu:
+            options.refuse("--fmus needs --fmu: FILE is driven in process, with the same results")
         run_file(options)
     elif options.scheduler or options.restart:
         options.refuse("--scheduler and --restart need a study FILE")

@@ -72,6 +72,7 @@ def read_study(path: Path) -> Study:
         }
     )
     people = _participants(file)
+    everybody = [one.id for one in people]
     route, road = _route(file)
     settings = StudySettings(
         route=route,
@@ -81,9 +82,7 @@ def read_study(path: Path) -> Study:
         function=_parameters(file, "function", function),
         vehicle=_parameters(file, "vehicle", vehicle),
         step_s=file.number(("drives", "step_s"), STEP_MIN_S, STEP_MAX_S, STEP_S),
-        recorded=frozenset(
-            file.list_of(("recordings", "participants"), [p.id for p in people], ())
-        ),
+        recorded=frozenset(file.list_of(("recordings", "participants"), everybody, ())),
     )
     return Study(
         title=file.words(("title",), path.stem),
