@@ -44,16 +44,20 @@ def vehicle_step(st: VehicleState, grade: Floats, step_s: float) -> None:
     # The margin keeps a communication step of 0.1 s plus rounding at 10 internal steps.
     read_inputs(st)
     count = max(1, floor(step_s / INTERNAL_STEP_S + 1.0 - 1e-6))
-    inner_s = step_s / count
+    inner_s = step_s
+    if count > 1:  # spares the usual step a division
+        inner_s = step_s / count
     for _ in range(count):
-        _advance(st, grade, inner_s)
-    _update_motion(st, road_load_n(st, grade))
+        _advance(st, inner_s)
+        st.load_n = road_load_n(st, grade)
+    _update_motion(st)
 
 
 def vehicle_refresh(st: VehicleState, grade: Floats) -> None:
     """Recompute acceleration and jerk from state and inputs."""
     read_inputs(st)
-    _update_motion(st, road_load_n(st, grade))
+    st.load_n = road_load_n(st, grade)
+    _update_motion(st)
 
 
 def read_inputs(st: VehicleState) -> None:
@@ -69,7 +73,8 @@ def read_inputs(st: VehicleState) -> None:
     st.brake = pedal_travel(st.driver_brake_pedal)
 
 
-def _update_motion(st: VehicleState, load: float) -> None:
+def _update_motion(st: VehicleState) -> None:
+    load = st.load_n
     inertia = st.body_mass_kg * st.body_rotating_factor
     if st.speed_mps <= 0.0 and not _leaves_standstill(st, load):
         st.acceleration_mps2 = 0.0
@@ -82,9 +87,9 @@ def _update_motion(st: VehicleState, load: float) -> None:
     st.jerk_mps3 = (drive_rate - brake_rate - drag_rate) / inertia
 
 
-def _advance(st: VehicleState, grade: Floats, step_s: float) -> None:
+def _advance(st: VehicleState, step_s: float) -> None:
     """One internal step: lags exactly, road load by the midpoint rule."""
-    load = road_load_n(st, grade)
+    load = st.load_n
     drive_demand = drive_demand_n(st, load)
     brake_demand = brake_demand_n(st, load)
     drive = lag_mean(st.drive_force_n, drive_demand, step_s / st.body_drive_lag_s)

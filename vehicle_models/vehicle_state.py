@@ -102,6 +102,7 @@ class VehicleState(VehicleParameters):
     # memory
     drive_force_n: float = 0.0
     brake_force_n: float = 0.0
+    load_n: float = 0.0  # road load at the present position and speed
     request_mps2: float = 0.0  # the inputs as used: finite, pedals within 0 and 1
     gas: float = 0.0
     brake: float = 0.0
