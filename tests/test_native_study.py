@@ -8,10 +8,12 @@ from pathlib import Path
 import pytest
 from pldf import cli
 from pldf.build_version import build_version
+from pldf.instance import ModelError
 from pldf.native.prepared import write_prepared_route, write_prepared_script
 from pldf.roads import fingerprint, packed_route, read_route
 from pldf.store import ProfileStore
-from pldf.study.fmu import Fmu
+from pldf.study.fmu import Fmu, Slave
+from pldf.study.master import unpacked
 from pldf.study.phases import PHASES, Setting, choose_route
 from pldf.study.run import run_study
 
@@ -63,6 +65,23 @@ def test_all_six_drives_are_those_of_the_python_fmus(
     assert found[0] == found[1]
     tables = {f"{part}/{name}.csv" for part in ("recordings", "profile_after") for name in PHASES}
     assert tables | {"rates.csv"} < set(found[0])
+
+
+def test_a_library_that_does_not_load_is_an_error(
+    native_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with unpacked(native_folder) as fmus:
+        library = fmus["vehicle"].folder / "binaries" / "linux64" / "LongitudinalVehicle.so"
+        library.write_bytes(b"no machine code")
+        with pytest.raises(
+            ModelError, match=r"^LongitudinalVehicle: cannot be loaded here: .*\.so"
+        ):
+            Slave(fmus["vehicle"], "vehicle", [])
+        library.unlink()
+        with pytest.raises(ModelError, match="cannot be loaded here: Cannot find shared library"):
+            Slave(fmus["vehicle"], "vehicle", [])
+    assert Path.cwd() == tmp_path
 
 
 @pytest.fixture

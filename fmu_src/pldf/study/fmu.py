@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import chdir
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, NamedTuple, cast
@@ -171,14 +172,8 @@ class Slave:
         self.said: list[Said] = []
         self._set, self.inputs = self._batches(inputs)
         self._get, self.outputs = self._batches(s.name for s in fmu.named("output"))
-        model = fmu.description
-        self.name: str = model.modelName
-        self._slave = fmi.FMU2Slave(
-            guid=model.guid,
-            unzipDirectory=str(fmu.folder),
-            modelIdentifier=model.coSimulation.modelIdentifier,
-            instanceName=part,
-        )
+        self.name: str = fmu.description.modelName
+        self._slave = self._load(part)
         self._callbacks = fmi.fmi2CallbackFunctions()
         self._callbacks.logger = fmi.fmi2CallbackLoggerTYPE(self._hear)
         self._callbacks.allocateMemory = fmi.fmi2CallbackAllocateMemoryTYPE(fmi.calloc)
@@ -226,6 +221,19 @@ class Slave:
         if self._slave.component:
             self._slave.freeInstance()
             self._slave.component = None
+
+    def _load(self, part: str) -> Any:
+        model = self.fmu.description
+        try:
+            with chdir("."):  # fmpy stays in the library's folder when that cannot be loaded
+                return fmi.FMU2Slave(
+                    guid=model.guid,
+                    unzipDirectory=str(self.fmu.folder),
+                    modelIdentifier=model.coSimulation.modelIdentifier,
+                    instanceName=part,
+                )
+        except Exception as error:  # fmpy raises bare Exception
+            raise ModelError(f"{self.name}: cannot be loaded here: {error}") from error
 
     def _call(self, call: Callable[..., Any], *arguments: Any, **named: Any) -> None:
         try:
