@@ -68,7 +68,11 @@ def _symbols(library: Any) -> tuple[set[str], dict[str, str]]:
             for needed in library.symbols_version_requirement
             for version in needed.get_auxiliary_symbols()
         }
-        imported = {str(s.name): owners.get(_version(s), "") for s in library.imported_symbols}
+        weak = lief.ELF.Symbol.BINDING.WEAK  # may stay open
+        wanted = [s for s in library.dynamic_symbols if s.shndx == 0 and s.name]
+        imported = {
+            str(s.name): str(owners.get(_version(s), "")) for s in wanted if s.binding != weak
+        }
         return {str(s.name) for s in library.exported_symbols}, imported
     if isinstance(library, lief.PE.Binary):
         imported = {str(e.name): str(i.name) for i in library.imports for e in i.entries}
