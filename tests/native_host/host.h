@@ -87,6 +87,7 @@ int get_outputs(const Fmu *fmu, void *c, double *values);
 void replay(const Fmu *fmu, const char *script, char **results, int count);
 void check(const char *description, const char *other, bool same_model);
 void hostile(const Fmu *fmu, long steps);
+void attempt(const Fmu *fmu);
 void senseless_inputs(const Fmu *fmu, double *values);
 double senseless_step(void);
 

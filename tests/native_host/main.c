@@ -2,19 +2,27 @@
           native_host check DESCRIPTION DESCRIPTION (of another model)
           native_host versions DESCRIPTION DESCRIPTION (of one model)
           native_host hostile DESCRIPTION STEPS
+          native_host attempt DESCRIPTION [DESCRIPTION ...]
    Ends with status 0 if all is well, and says on stderr which line is not. */
 #include <string.h>
 
 #include "host.h"
 
-int main(int count, char **arguments) {
-    CHECK(count >= 4);
-    bool versions = !strcmp(arguments[1], "versions");
-    if (versions || !strcmp(arguments[1], "check"))
-        return check(arguments[2], arguments[3], versions), 0;
-    Fmu *fmu = fmu_open(arguments[2]);
-    if (!strcmp(arguments[1], "replay")) replay(fmu, arguments[3], arguments + 4, count - 4);
-    else hostile(fmu, atol(arguments[3]));
+static void drive(const char *job, char **arguments, int count) {
+    Fmu *fmu = fmu_open(arguments[0]);
+    if (!strcmp(job, "replay")) replay(fmu, arguments[1], arguments + 2, count - 2);
+    else if (!strcmp(job, "hostile")) hostile(fmu, atol(arguments[1]));
+    else attempt(fmu);
     fmu_close(fmu);
+}
+
+int main(int count, char **arguments) {
+    CHECK(count >= 3);
+    const char *job = arguments[1];
+    if (!strcmp(job, "check")) check(arguments[2], arguments[3], false);
+    else if (!strcmp(job, "versions")) check(arguments[2], arguments[3], true);
+    else if (!strcmp(job, "attempt"))
+        for (int i = 2; i < count; i++) drive(job, arguments + i, 1);
+    else drive(job, arguments + 2, count - 2);
     return 0;
 }
