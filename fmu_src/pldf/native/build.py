@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib import metadata
 from importlib.util import find_spec
@@ -33,16 +33,25 @@ _TEXTS: Final = {
 
 
 class _Standard(NamedTuple):
-    """Where a version of FMI wants things; ``place`` is the folder below ``out``."""
+    """What differs between versions of FMI.
+
+    Attributes:
+        version: of FMI.
+        place: where the archives go, below ``out``.
+        icon: where it lies in an archive.
+        describe: makes the model description.
+        folder: of a target's library below ``binaries/``; empty: there is none.
+    """
 
     version: str
     place: str
     icon: str
     describe: Callable[[Model, Mapping[str, str]], Element]
+    folder: Callable[[str], str]
 
 
-_FMI2: Final = _Standard("2.0", "", "model.png", model_description)
-_FMI3: Final = _Standard("3.0", "fmi3", "terminalsAndIcons/icon.png", model_description3)
+_FMI2: Final = _Standard("2.0", "", "model.png", model_description, lambda t: TARGETS[t].fmi2)
+_FMI3: Final = _Standard("3.0", "fmi3", "terminalsAndIcons/icon.png", model_description3, str)
 
 
 @dataclass(frozen=True)
@@ -103,14 +112,11 @@ def build_native(
             library = link(folder, recipe.runtime, target, model.name, tell)
             check_library(library)
             libraries[target] = library.read_bytes()
-    ready = (
-        (_FMI2, with_guid(contents[0], guid), _binaries2(model.name, libraries)),
-        (_FMI3, with_guid(contents[1], token), _binaries3(model.name, libraries)),
-    )
+    ready = ((_FMI2, with_guid(contents[0], guid)), (_FMI3, with_guid(contents[1], token)))
     return [
         _written(out / standard.place, model.name, {**members, **binaries})
-        for standard, members, binaries in ready
-        if binaries
+        for standard, members in ready
+        if (binaries := _binaries(standard, model.name, libraries))
     ]
 
 
@@ -126,22 +132,23 @@ def _write_tables(folder: Path, head: str, body: str) -> None:
     (folder / "table.c").write_text(body, encoding="utf-8", newline="\n")
 
 
-def _binaries2(name: str, libraries: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return the libraries by their place in an FMI 2.0 archive, those for macOS as one."""
-    folders: dict[str, list[str]] = {}
-    for target in libraries:
-        if TARGETS[target].fmi2:
-            folders.setdefault(TARGETS[target].fmi2, []).append(target)
-    found = {}
-    for folder, targets in folders.items():
-        parts = [libraries[target] for target in targets]
-        data = parts[0] if len(parts) == 1 else universal(parts)
-        found[f"binaries/{folder}/{name}{TARGETS[targets[0]].suffix}"] = data
+def _folders(standard: _Standard, targets: Iterable[str]) -> dict[str, list[str]]:
+    """Return the folders of an archive's libraries, and for which targets each is."""
+    found: dict[str, list[str]] = {}
+    for target in targets:
+        if standard.folder(target):
+            found.setdefault(standard.folder(target), []).append(target)
     return found
 
 
-def _binaries3(name: str, libraries: Mapping[str, bytes]) -> dict[str, bytes]:
-    return {f"binaries/{t}/{name}{TARGETS[t].suffix}": data for t, data in libraries.items()}
+def _binaries(standard: _Standard, name: str, libraries: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Return the libraries by their place in an archive; those in one folder become one."""
+    found = {}
+    for folder, targets in _folders(standard, libraries).items():
+        parts = [libraries[target] for target in targets]
+        place = f"binaries/{folder}/{name}{TARGETS[targets[0]].suffix}"
+        found[place] = parts[0] if len(parts) == 1 else universal(parts)
+    return found
 
 
 def _inner(recipe: NativeRecipe, model: NativeModel) -> dict[str, bytes]:
@@ -163,7 +170,8 @@ def _contents(
     indent(root)
     description: Any = tostring(root, encoding="UTF-8", xml_declaration=True)
     licenses = dict(_licenses(targets))
-    running = as_machine_code(standard.version, ", ".join(targets), tuple(licenses))
+    platforms = ", ".join(_folders(standard, targets))
+    running = as_machine_code(standard.version, platforms, tuple(licenses))
     page = document(model.name, model.about, recipe.guide, shown, running)
     members = {
         DESCRIPTION: description,

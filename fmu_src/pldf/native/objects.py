@@ -80,11 +80,11 @@ def _digest(model: str) -> str:
     total = hashlib.sha256(model.encode())
     for name in ("numba", "llvmlite", "numpy"):
         total.update(f"{name} {metadata.version(name)}\n".encode())
-    package = Path(__file__).parents[1]
-    paths = [*package.glob("kernel/*.py"), *package.glob("native/*.py"), package / "compiled.py"]
-    other = importlib.import_module(model.partition(".")[0])
-    if other.__name__ != package.name:
-        paths += Path(str(other.__file__)).parent.glob("*.py")
+    here = Path(__file__).parent
+    paths = [*here.parent.glob("kernel/*.py"), here.parent / "compiled.py"]
+    paths += [here / f"{name}.py" for name in ("model", "objects", "pointers", "targets")]
+    entries = Path(str(importlib.import_module(model.partition(":")[0]).__file__))
+    paths += [entries] if entries.parent == here else entries.parent.glob("*.py")
     for path in sorted(paths):
         total.update(path.read_bytes())
     return total.hexdigest()[:16]
