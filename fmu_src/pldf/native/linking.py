@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import struct
 import subprocess
 import sys
@@ -54,7 +55,12 @@ def link(folder: Path, runtime: Path, target: str, name: str, tell: Callable[[st
 
 def _run(program: Sequence[str], folder: Path, late: Callable[[], None]) -> str:
     """Return what the program complains about if it fails, else nothing."""
-    with subprocess.Popen(program, cwd=folder, stderr=subprocess.PIPE, text=True) as process:
+    # Objects of C files are cached here alone: zig takes the ``table.h`` of two builds at the same
+    # time for one, both named from where they run.
+    environment = {**os.environ, "ZIG_LOCAL_CACHE_DIR": str(folder / "zig")}
+    with subprocess.Popen(
+        program, cwd=folder, env=environment, stderr=subprocess.PIPE, text=True
+    ) as process:
         try:
             _, problem = process.communicate(timeout=_PATIENCE_S)
         except subprocess.TimeoutExpired:
