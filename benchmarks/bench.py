@@ -2,7 +2,9 @@
 
     python benchmarks/bench.py [--dist dist]
 
-Times are medians in seconds of wall clock. Expect noise on shared machines: compare ratios.
+Times are medians in seconds of wall clock, unless their name says that the processor's time was
+measured (``cpu``). Expect noise on shared machines: compare ratios, and what the empty FMU and the
+clock alone show in the same run.
 """
 
 from __future__ import annotations
@@ -13,14 +15,17 @@ import platform
 import subprocess
 import sys
 import tempfile
+from contextlib import redirect_stdout
 from pathlib import Path
 from statistics import median
 from typing import Any, Final
 
 import fmu_step
 from empty_fmu import build_empty_fmu
+from fmpy import read_model_description  # type: ignore[import-untyped]
 from fmu_step import time_fmu
 from kernel_times import STUDY_KM, peak_memory_mb, plan_and_learn, step_times, toppra_s
+from pldf.build_version import build_version
 from pldf.kernel.state import PldfState
 
 from vehicle_models.driver_state import DriverState
@@ -51,6 +56,7 @@ def main() -> int:
         "kernel_step": step_times(),
         "toppra_4.5_km_s": toppra_s(),
         "by_length": [_by_length(length_km) for length_km in LENGTHS_KM],
+        "native": _native(options.dist),
     }
     print(json.dumps(result, indent=2))
     return 0
@@ -78,6 +84,51 @@ def _fmu(path: Path, record: type[Any]) -> dict[str, float]:
 def _first_start_s(path: Path) -> float:
     command = [sys.executable, fmu_step.__file__, str(path)]
     return float(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+
+
+def _native(dist: Path) -> dict[str, Any] | None:
+    """Return the times of the native FMUs; None, and say why, if they cannot be measured."""
+    folder = dist / "native"
+    problem = _native_problem(folder)
+    try:
+        from native_times import Effort, archive_sizes, native_times  # noqa: PLC0415 - an extra
+    except ImportError as absent:
+        problem = f"{absent}; run: pip install -e .[native]"
+    if problem:
+        print(f"no native times: {problem}", file=sys.stderr)
+        return None
+    return {
+        **native_times(folder, Effort()),
+        "in_fmpy": {name: _in_fmpy(dist, name) for name in RECORDS},
+        "archives": archive_sizes(folder),
+    }
+
+
+def _native_problem(folder: Path) -> str:
+    """Return what is in the way of measuring the native FMUs in ``folder``; empty if nothing."""
+    rebuild = "build with: python build_fmu.py --native"
+    if sys.platform != "linux":
+        return "the C host runs on Linux only"
+    for path in (folder / f"{name}.fmu" for name in RECORDS):
+        if not path.is_file():
+            return f"there is no {path}; {rebuild}"
+        if read_model_description(str(path)).version != build_version():
+            return f"{path} is made from other sources; {rebuild}"
+    return ""
+
+
+def _in_fmpy(dist: Path, name: str) -> dict[str, float]:
+    """Step the Python FMU and the native ones in turn; medians of ROUNDS rounds."""
+    paths = {
+        "python_fmi2": dist / f"{name}.fmu",
+        "native_fmi2": dist / "native" / f"{name}.fmu",
+        "native_fmi3": dist / "native" / "fmi3" / f"{name}.fmu",
+    }
+    found = {kind: path for kind, path in paths.items() if path.is_file()}
+    with redirect_stdout(sys.stderr):  # fmpy prints there what an FMU says
+        rounds = [{k: time_fmu(p, CRUISE).step_s for k, p in found.items()} for _ in range(ROUNDS)]
+    steps = {f"{kind}_step_s": median(times[kind] for times in rounds) for kind in found}
+    return {**steps, "python_to_native": steps["python_fmi2_step_s"] / steps["native_fmi2_step_s"]}
 
 
 def _by_length(length_km: float) -> dict[str, Any]:

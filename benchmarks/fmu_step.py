@@ -6,13 +6,18 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from fmpy import extract, read_model_description  # type: ignore[import-untyped]
 from fmpy.fmi2 import FMU2Slave  # type: ignore[import-untyped]
+from fmpy.fmi3 import FMU3Slave  # type: ignore[import-untyped]
 from pldf.fmi.wrapper import release_at_exit
 
-_CALLS = {"Real": "Real", "Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean"}
+# Type of a variable -> what the functions that set and get it are called after.
+_CALLS: Final = {
+    "2.0": {"Real": "Real", "Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean"},
+    "3.0": {"Float64": "Float64", "Int32": "Int32", "Enumeration": "Int64", "Boolean": "Boolean"},
+}
 
 
 class FmuTimes(NamedTuple):
@@ -26,7 +31,7 @@ def time_fmu(path: Path, inputs: dict[str, float], steps: int = 2000) -> FmuTime
     """Measure an FMU.
 
     Args:
-        path: the FMU.
+        path: the FMU, of FMI 2.0 or 3.0.
         inputs: values of inputs that shall differ from their start value; ``vehicle.s_m``, if there
             is one, advances with ``vehicle.speed_mps``.
         steps: number of steps of 10 ms.
@@ -35,19 +40,20 @@ def time_fmu(path: Path, inputs: dict[str, float], steps: int = 2000) -> FmuTime
     folder = Path(extract(str(path)))
     for library in folder.glob("binaries/linux64/*.so"):
         release_at_exit(library)  # the empty FMU is stock pythonfmu
-    slave = FMU2Slave(
+    calls = _CALLS[description.fmiVersion]
+    slave = (FMU2Slave if "Real" in calls else FMU3Slave)(
         guid=description.guid,
         unzipDirectory=str(folder),
         modelIdentifier=description.coSimulation.modelIdentifier,
     )
     began = perf_counter()
     slave.instantiate()
-    slave.setupExperiment(startTime=0.0)
+    if "Real" in calls:
+        slave.setupExperiment(startTime=0.0)
     slave.enterInitializationMode()
     slave.exitInitializationMode()
     start_s = perf_counter() - began
-    variables = [v for v in description.modelVariables if v.type in _CALLS]
-    step = _stepper(slave, variables, inputs)
+    step = _stepper(slave, description.modelVariables, calls, inputs)
     times = []
     for index in range(steps):
         began = perf_counter()
@@ -58,14 +64,16 @@ def time_fmu(path: Path, inputs: dict[str, float], steps: int = 2000) -> FmuTime
     return FmuTimes(start_s, sorted(times)[steps // 2])
 
 
-def _stepper(slave: Any, variables: list[Any], inputs: dict[str, float]) -> Callable[[float], None]:
+def _stepper(
+    slave: Any, variables: list[Any], calls: dict[str, str], inputs: dict[str, float]
+) -> Callable[[float], None]:
     setters, getters = [], []
-    for kind in ("Real", "Integer", "Boolean"):
-        ours = [v for v in variables if _CALLS[v.type] == kind]
+    for kind in dict.fromkeys(calls.values()):
+        ours = [v for v in variables if calls.get(v.type) == kind]
         ins = [v for v in ours if v.causality == "input"]
         outs = [v.valueReference for v in ours if v.causality == "output"]
         if ins:
-            number = float if kind == "Real" else int
+            number = float if kind in ("Real", "Float64") else int
             values = [number(inputs.get(v.name, _start(v))) for v in ins]
             position = next((i for i, v in enumerate(ins) if v.name == "vehicle.s_m"), None)
             references = [v.valueReference for v in ins]

@@ -1,0 +1,34 @@
+"""The native benchmark runs, and what it says makes sense; no time is judged here."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
+
+
+@pytest.fixture
+def measured(native_folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """The native section after very little measuring; from the study's first 300 steps."""
+    monkeypatch.syspath_prepend(BENCHMARKS)
+    import native_times  # noqa: PLC0415 - found by now
+
+    effort = native_times.Effort(drive_steps=300, drives=3, single_steps=1000, starts=3, finishes=2)
+    times: dict[str, Any] = native_times.native_times(native_folder, effort)
+    return times
+
+
+def test_the_native_benchmark_measures_every_fmu(measured: dict[str, Any]) -> None:
+    endings = measured.pop("terminate_with_learning")
+    assert set(measured) == {"AdaptivePLDF", "LongitudinalVehicle", "ScriptedDriver"}
+    for times in measured.values():
+        assert times["step_ratio"] == times["step_cpu_s"] / times["empty_step_cpu_s"] > 0.0
+        for single in ("single_step", "single_step_of_empty", "single_call_of_clock"):
+            assert 0.0 <= times[single]["p50_s"] <= times[single]["p99_9_s"]
+            assert times[single]["p99_9_s"] <= times[single]["max_s"] + 1e-9
+        assert times["instantiate_and_initialize"]["cpu_s"] > 0.0
+    assert {"without_store", "store_on_disk"} <= set(endings)
+    assert all(times["wall_s"] > 0.0 for times in endings.values())
