@@ -1,7 +1,6 @@
 /* The operating system: files, folders, the lock. Paths are UTF-8. What fails leaves its reason in
    `why` (REASON_SIZE bytes). */
-#ifndef PLDF_DISK_H
-#define PLDF_DISK_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -24,5 +23,3 @@ bool disk_lock(const char *folder, Lock *lock, char *why);
 void disk_unlock(Lock *lock);
 bool disk_absolute(const char *path, char *absolute);
 bool disk_environment(const char *name, char *value);
-
-#endif

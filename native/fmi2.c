@@ -5,9 +5,11 @@
 #include "fmi2Functions.h"
 #include "session.h"
 
+#define FMI(NAME) fmi2##NAME
+#define VALUES(TYPE) void *c, const uint32_t references[], size_t count, TYPE values[]
+#define VALUE_COUNT count
 #pragma GCC diagnostic ignored "-Wunused-parameter" /* the standard prescribes them */
-
-static fmi2Status answer(bool good) { return good ? fmi2OK : fmi2Error; }
+#include "calls.h"
 
 static void tell(const Session *s, Level level, const char *category, const char *text) {
     fmi2CallbackLogger logger = (fmi2CallbackLogger)s->importer.logger;
@@ -15,12 +17,6 @@ static void tell(const Session *s, Level level, const char *category, const char
 }
 
 const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
-const char *fmi2GetVersion(void) { return fmi2Version; }
-
-fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count,
-                               const fmi2String categories[]) {
-    return answer(session_log(c, on, count, categories));
-}
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
                               const fmi2CallbackFunctions *callbacks, fmi2Boolean visible,
@@ -34,8 +30,6 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     return session_new(name, resources, logging, problem, &importer);
 }
 
-void fmi2FreeInstance(fmi2Component c) { session_free(c); }
-
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_given, fmi2Real tolerance,
                                fmi2Real start, fmi2Boolean stop_given, fmi2Real stop) {
     return answer(session_allows(c, __func__, AT_START) && session_set_times(c, start, INFINITY));
@@ -45,40 +39,11 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
     return answer(session_allows(c, __func__, AT_START) && session_enter_initialization(c));
 }
 
-fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-    return answer(session_allows(c, __func__, IN_INITIALIZATION) && session_exit_initialization(c));
-}
-
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_rollback) {
     return answer(session_allows(c, __func__, AT_STEP) && session_step(c, time, step));
 }
 
-fmi2Status fmi2Terminate(fmi2Component c) {
-    return answer(session_allows(c, __func__, AT_STEP) && session_terminate(c));
-}
-
-fmi2Status fmi2Reset(fmi2Component c) { return answer(session_reset(c)); }
-
 /* Values */
-
-#define VALUES(TYPE) \
-    fmi2Component c, const fmi2ValueReference references[], size_t count, TYPE values[]
-
-#define GET(TYPE, KINDS, READ)                                                   \
-    fmi2Status fmi2Get##TYPE(VALUES(fmi2##TYPE)) {                               \
-        Session *s = c;                                                          \
-        bool good = session_can_get(s, references, count, values, count, KINDS); \
-        for (size_t i = 0; good && i < count; i++) values[i] = READ;             \
-        return answer(good);                                                     \
-    }
-
-#define SET(TYPE, KINDS, WRITE)                                                  \
-    fmi2Status fmi2Set##TYPE(VALUES(const fmi2##TYPE)) {                         \
-        Session *s = c;                                                          \
-        bool good = session_can_set(s, references, count, values, count, KINDS); \
-        for (size_t i = 0; good && i < count; i++) WRITE;                        \
-        return answer(good);                                                     \
-    }
 
 GET(Real, KIND_REAL, CELL(i).real)
 GET(Integer, KIND_INTEGER | KIND_ENUMERATION, (fmi2Integer)CELL(i).integer)
@@ -88,33 +53,6 @@ SET(Real, KIND_REAL, CELL(i).real = values[i])
 SET(Integer, KIND_INTEGER | KIND_ENUMERATION, CELL(i).integer = values[i])
 SET(Boolean, KIND_BOOLEAN, CELL(i).integer = values[i] != fmi2False)
 SET(String, KIND_STRING, good = session_set_text(s, references[i], values[i]))
-
-/* States */
-
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
-    return answer(session_get_state(c, state));
-}
-
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-    return answer(session_set_state(c, state));
-}
-
-fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
-    return answer(session_free_state(c, state));
-}
-
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
-    return answer(session_serialized_size(c, state, size));
-}
-
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-    return answer(session_serialize(c, state, bytes, size));
-}
-
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size,
-                                   fmi2FMUstate *state) {
-    return answer(session_deserialize(c, bytes, size, state));
-}
 
 /* The status of the last step, none of which is ever pending */
 
@@ -135,27 +73,24 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
 
 /* What the capability flags say is not there, and model exchange */
 
-#define REFUSED(NAME, ...) \
-    fmi2Status NAME(__VA_ARGS__) { return answer(session_unsupported(c, __func__)); }
-
-REFUSED(fmi2GetStatus, fmi2Component c, const fmi2StatusKind kind, fmi2Status *value)
-REFUSED(fmi2GetIntegerStatus, fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value)
-REFUSED(fmi2GetStringStatus, fmi2Component c, const fmi2StatusKind kind, fmi2String *value)
-REFUSED(fmi2CancelStep, fmi2Component c)
-REFUSED(fmi2SetRealInputDerivatives, fmi2Component c, const fmi2ValueReference references[],
+REFUSED(GetStatus, fmi2Component c, const fmi2StatusKind kind, fmi2Status *value)
+REFUSED(GetIntegerStatus, fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value)
+REFUSED(GetStringStatus, fmi2Component c, const fmi2StatusKind kind, fmi2String *value)
+REFUSED(CancelStep, fmi2Component c)
+REFUSED(SetRealInputDerivatives, fmi2Component c, const fmi2ValueReference references[],
         size_t count, const fmi2Integer order[], const fmi2Real values[])
-REFUSED(fmi2GetRealOutputDerivatives, fmi2Component c, const fmi2ValueReference references[],
+REFUSED(GetRealOutputDerivatives, fmi2Component c, const fmi2ValueReference references[],
         size_t count, const fmi2Integer order[], fmi2Real values[])
-REFUSED(fmi2GetDirectionalDerivative, fmi2Component c, const fmi2ValueReference unknown[], size_t m,
+REFUSED(GetDirectionalDerivative, fmi2Component c, const fmi2ValueReference unknown[], size_t m,
         const fmi2ValueReference known[], size_t n, const fmi2Real dknown[], fmi2Real dunknown[])
-REFUSED(fmi2EnterEventMode, fmi2Component c)
-REFUSED(fmi2NewDiscreteStates, fmi2Component c, fmi2EventInfo *info)
-REFUSED(fmi2EnterContinuousTimeMode, fmi2Component c)
-REFUSED(fmi2CompletedIntegratorStep, fmi2Component c, fmi2Boolean no_rollback, fmi2Boolean *event,
+REFUSED(EnterEventMode, fmi2Component c)
+REFUSED(NewDiscreteStates, fmi2Component c, fmi2EventInfo *info)
+REFUSED(EnterContinuousTimeMode, fmi2Component c)
+REFUSED(CompletedIntegratorStep, fmi2Component c, fmi2Boolean no_rollback, fmi2Boolean *event,
         fmi2Boolean *terminate)
-REFUSED(fmi2SetTime, fmi2Component c, fmi2Real time)
-REFUSED(fmi2SetContinuousStates, fmi2Component c, const fmi2Real values[], size_t count)
-REFUSED(fmi2GetDerivatives, fmi2Component c, fmi2Real values[], size_t count)
-REFUSED(fmi2GetEventIndicators, fmi2Component c, fmi2Real values[], size_t count)
-REFUSED(fmi2GetContinuousStates, fmi2Component c, fmi2Real values[], size_t count)
-REFUSED(fmi2GetNominalsOfContinuousStates, fmi2Component c, fmi2Real values[], size_t count)
+REFUSED(SetTime, fmi2Component c, fmi2Real time)
+REFUSED(SetContinuousStates, fmi2Component c, const fmi2Real values[], size_t count)
+REFUSED(GetDerivatives, fmi2Component c, fmi2Real values[], size_t count)
+REFUSED(GetEventIndicators, fmi2Component c, fmi2Real values[], size_t count)
+REFUSED(GetContinuousStates, fmi2Component c, fmi2Real values[], size_t count)
+REFUSED(GetNominalsOfContinuousStates, fmi2Component c, fmi2Real values[], size_t count)

@@ -5,9 +5,17 @@
 #include "fmi3Functions.h"
 #include "session.h"
 
+#define FMI(NAME) fmi3##NAME
+#define VALUES(TYPE) void *c, const uint32_t references[], size_t count, TYPE values[], size_t size
+#define VALUE_COUNT size
+#define fmi3GetFMUstate fmi3GetFMUState
+#define fmi3SetFMUstate fmi3SetFMUState
+#define fmi3FreeFMUstate fmi3FreeFMUState
+#define fmi3SerializedFMUstateSize fmi3SerializedFMUStateSize
+#define fmi3SerializeFMUstate fmi3SerializeFMUState
+#define fmi3DeSerializeFMUstate fmi3DeserializeFMUState
 #pragma GCC diagnostic ignored "-Wunused-parameter" /* the standard prescribes them */
-
-static fmi3Status answer(bool good) { return good ? fmi3OK : fmi3Error; }
+#include "calls.h"
 
 static void tell(const Session *s, Level level, const char *category, const char *text) {
     fmi3LogMessageCallback log_message = (fmi3LogMessageCallback)s->importer.logger;
@@ -21,13 +29,6 @@ static Session *new_session(fmi3String name, fmi3String token, fmi3String resour
     if (!token || strcmp(token, model.token) != 0)
         problem = "the instantiation token is that of another FMU";
     return session_new(name, resources, logging, problem, &importer);
-}
-
-const char *fmi3GetVersion(void) { return fmi3Version; }
-
-fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t count,
-                               const fmi3String categories[]) {
-    return answer(session_log(c, on, count, categories));
 }
 
 fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources,
@@ -63,18 +64,12 @@ fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token
                        "only co-simulation is possible");
 }
 
-void fmi3FreeInstance(fmi3Instance c) { session_free(c); }
-
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerance_given,
                                        fmi3Float64 tolerance, fmi3Float64 start,
                                        fmi3Boolean stop_given, fmi3Float64 stop) {
     return answer(session_allows(c, __func__, AT_START) &&
                   session_set_times(c, start, stop_given ? stop : INFINITY) &&
                   session_enter_initialization(c));
-}
-
-fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
-    return answer(session_allows(c, __func__, IN_INITIALIZATION) && session_exit_initialization(c));
 }
 
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Boolean no_rollback,
@@ -88,32 +83,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Bo
     return answer(good);
 }
 
-fmi3Status fmi3Terminate(fmi3Instance c) {
-    return answer(session_allows(c, __func__, AT_STEP) && session_terminate(c));
-}
-
-fmi3Status fmi3Reset(fmi3Instance c) { return answer(session_reset(c)); }
-
 /* Values */
-
-#define VALUES(TYPE) \
-    fmi3Instance c, const fmi3ValueReference references[], size_t count, TYPE values[], size_t size
-
-#define GET(TYPE, KINDS, READ)                                                  \
-    fmi3Status fmi3Get##TYPE(VALUES(fmi3##TYPE)) {                              \
-        Session *s = c;                                                         \
-        bool good = session_can_get(s, references, count, values, size, KINDS); \
-        for (size_t i = 0; good && i < count; i++) values[i] = READ;            \
-        return answer(good);                                                    \
-    }
-
-#define SET(TYPE, KINDS, WRITE)                                                 \
-    fmi3Status fmi3Set##TYPE(VALUES(const fmi3##TYPE)) {                        \
-        Session *s = c;                                                         \
-        bool good = session_can_set(s, references, count, values, size, KINDS); \
-        for (size_t i = 0; good && i < count; i++) WRITE;                       \
-        return answer(good);                                                    \
-    }
 
 static bool is_time(fmi3ValueReference reference) {
     return reference == (fmi3ValueReference)model.variable_count;
@@ -130,40 +100,11 @@ SET(Int64, KIND_ENUMERATION, CELL(i).integer = values[i])
 SET(Boolean, KIND_BOOLEAN, CELL(i).integer = values[i])
 SET(String, KIND_STRING, good = session_set_text(s, references[i], values[i]))
 
-/* States */
-
-fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state) {
-    return answer(session_get_state(c, state));
-}
-
-fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
-    return answer(session_set_state(c, state));
-}
-
-fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *state) {
-    return answer(session_free_state(c, state));
-}
-
-fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t *size) {
-    return answer(session_serialized_size(c, state, size));
-}
-
-fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
-    return answer(session_serialize(c, state, bytes, size));
-}
-
-fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size,
-                                   fmi3FMUState *state) {
-    return answer(session_deserialize(c, bytes, size, state));
-}
-
 /* What the capability flags say is not there, other types, model exchange, scheduled execution */
 
-#define REFUSED(NAME, ...) \
-    fmi3Status NAME(__VA_ARGS__) { return answer(session_unsupported(c, __func__)); }
-#define REFUSED_TYPE(TYPE)                              \
-    REFUSED(fmi3Get##TYPE, VALUES(fmi3##TYPE))          \
-    REFUSED(fmi3Set##TYPE, VALUES(const fmi3##TYPE))
+#define REFUSED_TYPE(TYPE)                 \
+    REFUSED(Get##TYPE, VALUES(fmi3##TYPE)) \
+    REFUSED(Set##TYPE, VALUES(const fmi3##TYPE))
 #define REFERENCES fmi3Instance c, const fmi3ValueReference references[], size_t count
 
 REFUSED_TYPE(Float32)
@@ -173,44 +114,44 @@ REFUSED_TYPE(Int16)
 REFUSED_TYPE(UInt16)
 REFUSED_TYPE(UInt32)
 REFUSED_TYPE(UInt64)
-REFUSED(fmi3GetBinary, REFERENCES, size_t sizes[], fmi3Binary values[], size_t size)
-REFUSED(fmi3SetBinary, REFERENCES, const size_t sizes[], const fmi3Binary values[], size_t size)
-REFUSED(fmi3GetClock, REFERENCES, fmi3Clock values[])
-REFUSED(fmi3SetClock, REFERENCES, const fmi3Clock values[])
-REFUSED(fmi3GetIntervalDecimal, REFERENCES, fmi3Float64 s[], fmi3IntervalQualifier qualifiers[])
-REFUSED(fmi3GetIntervalFraction, REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
+REFUSED(GetBinary, REFERENCES, size_t sizes[], fmi3Binary values[], size_t size)
+REFUSED(SetBinary, REFERENCES, const size_t sizes[], const fmi3Binary values[], size_t size)
+REFUSED(GetClock, REFERENCES, fmi3Clock values[])
+REFUSED(SetClock, REFERENCES, const fmi3Clock values[])
+REFUSED(GetIntervalDecimal, REFERENCES, fmi3Float64 s[], fmi3IntervalQualifier qualifiers[])
+REFUSED(GetIntervalFraction, REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
         fmi3IntervalQualifier qualifiers[])
-REFUSED(fmi3GetShiftDecimal, REFERENCES, fmi3Float64 shifts[])
-REFUSED(fmi3GetShiftFraction, REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[])
-REFUSED(fmi3SetIntervalDecimal, REFERENCES, const fmi3Float64 intervals[])
-REFUSED(fmi3SetIntervalFraction, REFERENCES, const fmi3UInt64 counters[], const fmi3UInt64 units[])
-REFUSED(fmi3SetShiftDecimal, REFERENCES, const fmi3Float64 shifts[])
-REFUSED(fmi3SetShiftFraction, REFERENCES, const fmi3UInt64 counters[], const fmi3UInt64 units[])
-REFUSED(fmi3GetOutputDerivatives, REFERENCES, const fmi3Int32 orders[], fmi3Float64 values[],
+REFUSED(GetShiftDecimal, REFERENCES, fmi3Float64 shifts[])
+REFUSED(GetShiftFraction, REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[])
+REFUSED(SetIntervalDecimal, REFERENCES, const fmi3Float64 intervals[])
+REFUSED(SetIntervalFraction, REFERENCES, const fmi3UInt64 counters[], const fmi3UInt64 units[])
+REFUSED(SetShiftDecimal, REFERENCES, const fmi3Float64 shifts[])
+REFUSED(SetShiftFraction, REFERENCES, const fmi3UInt64 counters[], const fmi3UInt64 units[])
+REFUSED(GetOutputDerivatives, REFERENCES, const fmi3Int32 orders[], fmi3Float64 values[],
         size_t size)
-REFUSED(fmi3GetDirectionalDerivative, REFERENCES, const fmi3ValueReference knowns[], size_t n,
+REFUSED(GetDirectionalDerivative, REFERENCES, const fmi3ValueReference knowns[], size_t n,
         const fmi3Float64 seed[], size_t m, fmi3Float64 values[], size_t size)
-REFUSED(fmi3GetAdjointDerivative, REFERENCES, const fmi3ValueReference knowns[], size_t n,
+REFUSED(GetAdjointDerivative, REFERENCES, const fmi3ValueReference knowns[], size_t n,
         const fmi3Float64 seed[], size_t m, fmi3Float64 values[], size_t size)
-REFUSED(fmi3GetNumberOfVariableDependencies, fmi3Instance c, fmi3ValueReference v, size_t *count)
-REFUSED(fmi3GetVariableDependencies, fmi3Instance c, fmi3ValueReference v, size_t elements[],
+REFUSED(GetNumberOfVariableDependencies, fmi3Instance c, fmi3ValueReference v, size_t *count)
+REFUSED(GetVariableDependencies, fmi3Instance c, fmi3ValueReference v, size_t elements[],
         fmi3ValueReference references[], size_t indices[], fmi3DependencyKind kinds[], size_t count)
-REFUSED(fmi3EnterConfigurationMode, fmi3Instance c)
-REFUSED(fmi3ExitConfigurationMode, fmi3Instance c)
-REFUSED(fmi3EnterEventMode, fmi3Instance c)
-REFUSED(fmi3EnterStepMode, fmi3Instance c)
-REFUSED(fmi3EvaluateDiscreteStates, fmi3Instance c)
-REFUSED(fmi3UpdateDiscreteStates, fmi3Instance c, fmi3Boolean *again, fmi3Boolean *terminate,
+REFUSED(EnterConfigurationMode, fmi3Instance c)
+REFUSED(ExitConfigurationMode, fmi3Instance c)
+REFUSED(EnterEventMode, fmi3Instance c)
+REFUSED(EnterStepMode, fmi3Instance c)
+REFUSED(EvaluateDiscreteStates, fmi3Instance c)
+REFUSED(UpdateDiscreteStates, fmi3Instance c, fmi3Boolean *again, fmi3Boolean *terminate,
         fmi3Boolean *nominals, fmi3Boolean *values, fmi3Boolean *defined, fmi3Float64 *next)
-REFUSED(fmi3EnterContinuousTimeMode, fmi3Instance c)
-REFUSED(fmi3CompletedIntegratorStep, fmi3Instance c, fmi3Boolean no_rollback, fmi3Boolean *event,
+REFUSED(EnterContinuousTimeMode, fmi3Instance c)
+REFUSED(CompletedIntegratorStep, fmi3Instance c, fmi3Boolean no_rollback, fmi3Boolean *event,
         fmi3Boolean *terminate)
-REFUSED(fmi3SetTime, fmi3Instance c, fmi3Float64 time)
-REFUSED(fmi3SetContinuousStates, fmi3Instance c, const fmi3Float64 values[], size_t count)
-REFUSED(fmi3GetContinuousStateDerivatives, fmi3Instance c, fmi3Float64 values[], size_t count)
-REFUSED(fmi3GetEventIndicators, fmi3Instance c, fmi3Float64 values[], size_t count)
-REFUSED(fmi3GetContinuousStates, fmi3Instance c, fmi3Float64 values[], size_t count)
-REFUSED(fmi3GetNominalsOfContinuousStates, fmi3Instance c, fmi3Float64 values[], size_t count)
-REFUSED(fmi3GetNumberOfEventIndicators, fmi3Instance c, size_t *count)
-REFUSED(fmi3GetNumberOfContinuousStates, fmi3Instance c, size_t *count)
-REFUSED(fmi3ActivateModelPartition, fmi3Instance c, fmi3ValueReference clock, fmi3Float64 time)
+REFUSED(SetTime, fmi3Instance c, fmi3Float64 time)
+REFUSED(SetContinuousStates, fmi3Instance c, const fmi3Float64 values[], size_t count)
+REFUSED(GetContinuousStateDerivatives, fmi3Instance c, fmi3Float64 values[], size_t count)
+REFUSED(GetEventIndicators, fmi3Instance c, fmi3Float64 values[], size_t count)
+REFUSED(GetContinuousStates, fmi3Instance c, fmi3Float64 values[], size_t count)
+REFUSED(GetNominalsOfContinuousStates, fmi3Instance c, fmi3Float64 values[], size_t count)
+REFUSED(GetNumberOfEventIndicators, fmi3Instance c, size_t *count)
+REFUSED(GetNumberOfContinuousStates, fmi3Instance c, size_t *count)
+REFUSED(ActivateModelPartition, fmi3Instance c, fmi3ValueReference clock, fmi3Float64 time)

@@ -1,7 +1,6 @@
 /* One model as data: variables, defaults, arrays and the entry points compiled from its kernel.
    The table (table.h, table.c) is generated from the model's table of signals. */
-#ifndef PLDF_MODEL_H
-#define PLDF_MODEL_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -49,5 +48,3 @@ typedef struct {
 extern const Model model;
 
 #include "table.h" /* MODEL_CELLS, MODEL_TEXTS */
-
-#endif

@@ -1,6 +1,5 @@
 /* The bytes of profile files and of prepared routes and scripts, checked before they are used. */
-#ifndef PLDF_PROFILE_H
-#define PLDF_PROFILE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -34,5 +33,3 @@ bool profile_same_history(const Profile *a, const Profile *b);
 /* Bytes of the profile (driver, route and nodes are set) with one more iteration; NULL: memory. */
 uint8_t *profile_extend(const Profile *profile, const Lesson *lesson, int64_t *size);
 uint32_t checksum(const uint8_t *bytes, int64_t size);
-
-#endif

@@ -265,11 +265,7 @@ bool session_set_text(Session *s, uint32_t reference, const char *text) {
 
 /* Addresses: file:///p, file:////p, file:/p, plain; a slash at the end; %20 */
 
-static int hex_of(char c) {
-    static const char digits[] = "0123456789abcdef0123456789ABCDEF";
-    const char *found = c ? strchr(digits, c) : NULL;
-    return found ? (int)((found - digits) % 16) : -1;
-}
+static bool is_hex(char c) { return c && strchr("0123456789abcdefABCDEF", c); }
 
 void path_of_address(const char *address, char *path) {
     bool coded = address && !strncmp(address, "file:", 5);
@@ -281,9 +277,11 @@ void path_of_address(const char *address, char *path) {
     if (coded && at[0] == '/' && at[1] && (at[2] == ':' || !strncmp(at + 2, "%3A", 3))) at++;
     size_t length = 0;
     for (; *at && length + 1 < PATH_SIZE; at++) {
-        int high = coded && *at == '%' ? hex_of(at[1]) : -1, low = high >= 0 ? hex_of(at[2]) : -1;
-        path[length++] = low >= 0 ? (char)(16 * high + low) : *at;
-        if (low >= 0) at += 2;
+        unsigned byte = 0;
+        bool escaped = coded && *at == '%' && is_hex(at[1]) && is_hex(at[2]);
+        if (escaped) sscanf(at + 1, "%2x", &byte);
+        path[length++] = escaped ? (char)byte : *at;
+        if (escaped) at += 2;
     }
     while (length > 1 && (path[length - 1] == '/' || path[length - 1] == '\\')) length--;
     path[length] = 0;

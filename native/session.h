@@ -1,7 +1,6 @@
 /* One instance between instantiation and release, whatever version of FMI calls it (as
    pldf/fmi/session.py): FMI's instance is this Session. What returns false has told why. */
-#ifndef PLDF_SESSION_H
-#define PLDF_SESSION_H
+#pragma once
 
 #include <stddef.h>
 
@@ -68,9 +67,6 @@ bool session_can_set(Session *s, const uint32_t *references, size_t count, const
                      size_t value_count, int kinds);
 double session_time(const Session *s);
 bool session_set_text(Session *s, uint32_t reference, const char *text);
-/* The value of the i-th of these `references` to variables of the session `s`. */
-#define CELL(i) s->state.record[model.variables[references[i]].cell]
-#define TEXT(i) s->state.texts[model.variables[references[i]].cell]
 
 /* FMU states; serialized, a checksum follows (state.c) */
 bool session_get_state(Session *s, void **state);
@@ -89,5 +85,3 @@ void run_call(Entry *entry, State *state, Run *run, double step_s); /* if the mo
 void run_learn(Session *s);
 void run_release(Run *run);
 void path_of_address(const char *address, char *path); /* file:// or plain */
-
-#endif

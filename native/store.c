@@ -32,17 +32,14 @@ static StoreResult read_profile(const char *path, const Profile *wanted, Profile
     return good ? STORE_LOADED : STORE_REFUSED;
 }
 
-/* First name that is not taken; `pattern` holds one %d. */
-static void free_name(const char *path, const char *tail, char *name) {
-    for (int number = 1;; number++) {
-        snprintf(name, PATH_SIZE, "%s%s%d%s", path, tail, number,
-                 strstr(tail, "conflict") ? ".pldf" : "");
-        if (!disk_exists(name)) return;
-    }
+/* First name that is not taken. */
+static void free_name(const char *stem, const char *kind, const char *end, char *name) {
+    for (int number = 1; number == 1 || disk_exists(name); number++)
+        snprintf(name, PATH_SIZE, "%s.%s-%d%s", stem, kind, number, end);
 }
 
 static bool keep_aside(const char *path, char *kept, char *why) {
-    free_name(path, ".refused-", kept);
+    free_name(path, "refused", "", kept);
     return disk_rename(path, kept, why);
 }
 
@@ -93,7 +90,7 @@ static Level put(const char *path, const Profile *ours, const uint8_t *bytes, in
     StoreResult found = read_profile(path, ours, &present, why);
     if (found == STORE_LOADED && !profile_same_history(&present, ours)) {
         snprintf(stem, sizeof stem, "%.*s", (int)(strlen(path) - strlen(".pldf")), path);
-        free_name(stem, ".conflict-", kept);
+        free_name(stem, "conflict", ".pldf", kept);
         snprintf(message, MESSAGE_SIZE,
                  "%s: changed by another process during this drive and left as it is; what this "
                  "drive learned is kept in %s", path, kept);

@@ -1,6 +1,5 @@
 /* As pldf/store.py: a folder with one profile file per driver and route. */
-#ifndef PLDF_STORE_H
-#define PLDF_STORE_H
+#pragma once
 
 #include "profile.h"
 
@@ -14,5 +13,3 @@ StoreResult store_load(const char *folder, Profile *profile, char *message);
 /* Save `profile`, as it was loaded for this drive, with one iteration more; `message` tells how. */
 Level store_save(const char *folder, const Profile *profile, const Lesson *lesson, char *message);
 void profile_free(Profile *profile);
-
-#endif
