@@ -3,12 +3,15 @@
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
+from xml.etree.ElementTree import tostring
 
 import pytest
+from fmpy.validation import validate_fmu
 from pldf.fmi.access import Access
 from pldf.fmi.description import Model, model_description
 from pldf.fmi.packing import isolate
 from pldf.fmi.packing.archive import with_guid
+from pldf.fmi.packing.description3 import model_description3
 from pldf.fmi.packing.documentation import document
 from pldf.fmi.phases import CALLS, Phase, next_phase
 from pldf.fmi.units import base_unit
@@ -127,11 +130,12 @@ def test_access_forgets_groups_that_are_never_repeated():
 # Model description
 
 
-def described(**changes):
+def described(describe=model_description, **changes):
     signals = tuple(SimpleNamespace(**{**vars(s), **changes.get(s.field, {})}) for s in SIGNALS)
-    return model_description(Model("M", "about", signals, 10.0), {"logAll": "all"})
+    return describe(Model("M", "about", signals, 10.0), {"logAll": "all"})
 
 
+@pytest.mark.parametrize("describe", [model_description, model_description3])
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
@@ -147,9 +151,25 @@ def described(**changes):
         ),
     ],
 )
-def test_tables_that_break_a_rule_are_refused(changes, message):
+def test_tables_that_break_a_rule_are_refused(describe, changes, message):
     with pytest.raises(ValueError, match=message):
-        described(**changes)
+        described(describe, **changes)
+
+
+def test_fmi_3_has_a_time_of_its_own():
+    with pytest.raises(ValueError, match="'time' is the name of the independent variable"):
+        described(model_description3, speed={"name": "time"})
+
+
+@pytest.mark.parametrize("describe", [model_description, model_description3])
+@pytest.mark.parametrize("kept", [(), SIGNALS[:2], SIGNALS[-1:], SIGNALS])
+def test_models_that_lack_outputs_units_or_enumerations_are_valid_too(tmp_path, describe, kept):
+    root = describe(Model("M", "about", kept, 10.0), {"logAll": "all"})
+    (tmp_path / "modelDescription.xml").write_bytes(tostring(root, encoding="UTF-8"))
+    problems = validate_fmu(str(tmp_path))
+    if not kept and describe is model_description:  # FMI 2.0 knows no model without variables
+        assert "ModelVariables" in problems.pop()
+    assert problems == []
 
 
 def test_numbers_are_exact_to_the_bit():

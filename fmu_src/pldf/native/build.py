@@ -28,7 +28,8 @@ from .targets import TARGETS
 
 _TEXTS: Final = {
     "route_file": "Route prepared by 'pldf route FILE --export OUT.prepared', in place of route_id",
-    "script_file": "Prepared script in place of the one of script_id",
+    "script_file": "Script prepared by 'pldf script FILE --export OUT.prepared', "
+    "in place of script_id",
 }
 
 

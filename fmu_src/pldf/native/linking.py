@@ -19,7 +19,7 @@ FLAGS: Final = (
     "-std=c11", "-O2", "-ffp-contract=off", "-fwrapv", "-fvisibility=hidden",
     "-Wall", "-Wextra", "-Werror", "-shared", "-s",
 )  # fmt: skip
-_PATIENCE_S: Final = 10.0
+_PATIENCE_S: Final = 20.0
 _FAT_MAGIC: Final = 0xCAFEBABE
 _FAT_ALIGNMENT: Final = 14  # as a power of two: pages of macOS on ARM
 

@@ -39,12 +39,15 @@ _CAPABILITIES: Final = {
     "hasEventMode": "false",
     "providesEvaluateDiscreteStates": "false",
 }
+_TIME: Final = "time"
 _TYPES: Final = {"Real": "Float64", "Integer": "Int32"}  # the others kept their names
 
 
 def model_description3(model: Model, log_categories: Mapping[str, str]) -> Element:
     """Return the root element; ValueError if a signal breaks a rule of FMI."""
     check(model.signals)
+    if _TIME in {signal.name for signal in model.signals}:
+        raise ValueError(f"{_TIME!r} is the name of the independent variable")
     about = {"fmiVersion": "3.0", "instantiationToken": NO_GUID, **header(model)}
     root = Element("fmiModelDescription", about)
     SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **_CAPABILITIES})
@@ -79,7 +82,7 @@ def _variable(signal: Signal, reference: int) -> Element:
 
 def _time(reference: int) -> Element:
     said = {
-        "name": "time",
+        "name": _TIME,
         "valueReference": str(reference),
         "description": "Simulation time",
         "causality": "independent",
