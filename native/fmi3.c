@@ -22,46 +22,36 @@ static void tell(const Session *s, Level level, const char *category, const char
     log_message(s->importer.environment, (fmi3Status)level, category, text);
 }
 
-static Session *new_session(fmi3String name, fmi3String token, fmi3String resources, bool logging,
-                            void *environment, fmi3LogMessageCallback log_message,
-                            const char *problem) {
+/* What all three instantiations are given. */
+#define NAMES \
+    fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging
+#define CALLBACK fmi3InstanceEnvironment environment, fmi3LogMessageCallback log_message
+
+static Session *new_session(NAMES, CALLBACK, const char *problem) {
     Importer importer = {tell, (void (*)(void))log_message, environment, "#"}; /* #1# is a variable */
     if (!token || strcmp(token, model.token) != 0)
         problem = "the instantiation token is that of another FMU";
     return session_new(name, resources, logging, problem, &importer);
 }
 
-fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources,
-                                          fmi3Boolean visible, fmi3Boolean logging,
-                                          fmi3InstanceEnvironment environment,
-                                          fmi3LogMessageCallback log_message) {
-    return new_session(name, token, resources, logging, environment, log_message,
-                       "only co-simulation is possible");
+static const char ONE_KIND[] = "only co-simulation is possible";
+
+fmi3Instance fmi3InstantiateModelExchange(NAMES, CALLBACK) {
+    return new_session(name, token, resources, visible, logging, environment, log_message, ONE_KIND);
 }
 
-fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources,
-                                         fmi3Boolean visible, fmi3Boolean logging,
-                                         fmi3Boolean event_mode, fmi3Boolean early_return,
-                                         const fmi3ValueReference intermediate[], size_t count,
-                                         fmi3InstanceEnvironment environment,
-                                         fmi3LogMessageCallback log_message,
-                                         fmi3IntermediateUpdateCallback update) {
-    return new_session(name, token, resources, logging, environment, log_message,
-                       event_mode ? "there is no event mode"
-                       : count    ? "there are no intermediate variables"
-                                  : NULL);
-}
-
-fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token,
-                                               fmi3String resources, fmi3Boolean visible,
-                                               fmi3Boolean logging,
-                                               fmi3InstanceEnvironment environment,
-                                               fmi3LogMessageCallback log_message,
-                                               fmi3ClockUpdateCallback update,
+fmi3Instance fmi3InstantiateScheduledExecution(NAMES, CALLBACK, fmi3ClockUpdateCallback update,
                                                fmi3LockPreemptionCallback lock,
                                                fmi3UnlockPreemptionCallback unlock) {
-    return new_session(name, token, resources, logging, environment, log_message,
-                       "only co-simulation is possible");
+    return new_session(name, token, resources, visible, logging, environment, log_message, ONE_KIND);
+}
+
+fmi3Instance fmi3InstantiateCoSimulation(NAMES, fmi3Boolean event_mode, fmi3Boolean early_return,
+                                         const fmi3ValueReference intermediate[], size_t count,
+                                         CALLBACK, fmi3IntermediateUpdateCallback update) {
+    const char *problem = count ? "there are no intermediate variables" : NULL;
+    if (event_mode) problem = "there is no event mode";
+    return new_session(name, token, resources, visible, logging, environment, log_message, problem);
 }
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerance_given,

@@ -202,8 +202,8 @@ void session_free(Session *s) {
 
 static const Variable *find(Session *s, uint32_t reference, int kinds) {
     uint32_t count = (uint32_t)model.variable_count;
-    const Variable *v = reference < count ? &model.variables[reference] : &TIME;
-    if (reference <= count && v->kind & kinds) return v;
+    if (reference < count && model.variables[reference].kind & kinds) return &model.variables[reference];
+    if (reference == count && kinds & KIND_TIME) return &TIME;
     session_tell(s, ERROR_LEVEL, "there is no variable of this type with value reference %u",
                  (unsigned)reference);
     return NULL;

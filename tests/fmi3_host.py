@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from fmi_host import Host, Slave
 from fmpy import fmi3 as fmi
-
-_SUFFIX = {"Enumeration": "Int64"}
 
 
 class Host3(Host):
@@ -20,6 +18,8 @@ class Host3(Host):
 
 class Slave3(Slave):
     """One FMI 3.0 FMU instance, driven by variable names."""
+
+    SUFFIX: ClassVar = {"Enumeration": "Int64"}
 
     def __init__(
         self, host: Host3, name: str | bytes, location: str | None, **changes: Any
@@ -59,19 +59,6 @@ class Slave3(Slave):
         self.fmu.enterInitializationMode(startTime=0.0)
         self.fmu.exitInitializationMode()
         return self
-
-    def set(self, **values: Any) -> None:
-        """Set variables."""
-        for name, value in values.items():
-            variable = self.variables[name.replace("__", ".")]
-            setter = getattr(self.fmu, f"set{_SUFFIX.get(variable.type, variable.type)}")
-            setter([variable.valueReference], [value])
-
-    def get(self, name: str) -> Any:
-        """Return the value of a variable."""
-        variable = self.variables[name]
-        getter = getattr(self.fmu, f"get{_SUFFIX.get(variable.type, variable.type)}")
-        return getter([variable.valueReference])[0]
 
     def state(self) -> bytes:
         """Return the serialized FMU state."""

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from ctypes import byref
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from fmpy import extract, read_model_description
 from fmpy import fmi2 as fmi
 from fmpy.fmi1 import FMICallException
-
-_SUFFIX = {"Real": "Real", "Integer": "Integer", "Enumeration": "Integer"}
 
 
 class Host:
@@ -27,6 +25,8 @@ class Host:
 
 class Slave:
     """One FMU instance, driven by variable names."""
+
+    SUFFIX: ClassVar = {"Enumeration": "Integer"}  # of fmpy's get and set; else the type's name
 
     def __init__(self, host: Host, name: str | bytes, location: str) -> None:
         self.log: list[tuple[int, str, str]] = []  # status, category, text
@@ -72,13 +72,13 @@ class Slave:
         """Set variables."""
         for name, value in values.items():
             variable = self.variables[name.replace("__", ".")]
-            setter = getattr(self.fmu, f"set{_SUFFIX.get(variable.type, variable.type)}")
+            setter = getattr(self.fmu, f"set{self.SUFFIX.get(variable.type, variable.type)}")
             setter([variable.valueReference], [value])
 
     def get(self, name: str) -> Any:
         """Return the value of a variable."""
         variable = self.variables[name]
-        getter = getattr(self.fmu, f"get{_SUFFIX.get(variable.type, variable.type)}")
+        getter = getattr(self.fmu, f"get{self.SUFFIX.get(variable.type, variable.type)}")
         return getter([variable.valueReference])[0]
 
     def outputs(self) -> dict[str, Any]:
