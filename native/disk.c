@@ -75,20 +75,16 @@ static void remove_file(const char *path) {
     _wunlink(wide(path, w));
 }
 
-bool disk_exists(const char *path) {
+static bool make_one(const char *path) {
     Wide w;
-    return GetFileAttributesW(wide(path, w)) != INVALID_FILE_ATTRIBUTES;
+    return CreateDirectoryW(wide(path, w), NULL);
 }
 
-bool disk_is_folder(const char *path) {
+DiskEntry disk_entry(const char *path) {
     Wide w;
     DWORD found = GetFileAttributesW(wide(path, w));
-    return found != INVALID_FILE_ATTRIBUTES && (found & FILE_ATTRIBUTE_DIRECTORY);
-}
-
-static bool make_one_folder(const char *path, char *why) {
-    Wide w;
-    return CreateDirectoryW(wide(path, w), NULL) || disk_is_folder(path) || fail_now(why);
+    if (found == INVALID_FILE_ATTRIBUTES) return NO_ENTRY;
+    return found & FILE_ATTRIBUTE_DIRECTORY ? FOLDER : OTHER_ENTRY;
 }
 
 static bool take_lock(int file, const char *path) {
@@ -139,18 +135,12 @@ static bool move(const char *from, const char *to) {
 
 static void remove_file(const char *path) { unlink(path); }
 
-bool disk_exists(const char *path) {
-    Status status;
-    return lstat(path, &status) == 0;
-}
+static bool make_one(const char *path) { return mkdir(path, 0777) == 0; }
 
-bool disk_is_folder(const char *path) {
+DiskEntry disk_entry(const char *path) {
     Status status;
-    return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
-}
-
-static bool make_one_folder(const char *path, char *why) {
-    return mkdir(path, 0777) == 0 || disk_is_folder(path) || fail_now(why);
+    if (lstat(path, &status) != 0) return NO_ENTRY;
+    return stat(path, &status) == 0 && S_ISDIR(status.st_mode) ? FOLDER : OTHER_ENTRY;
 }
 
 /* Valid only if it still is the file of that name: its last holder may have removed it. */
@@ -183,8 +173,8 @@ bool disk_environment(const char *name, char *value) {
 #endif
 
 static bool is_busy(const char *path, int *polls) {
-    if (!BUSY_WHILE_OPEN || errno != EACCES || ++*polls > BUSY_POLLS || disk_is_folder(path))
-        return false;
+    if (!BUSY_WHILE_OPEN || errno != EACCES || ++*polls > BUSY_POLLS) return false;
+    if (disk_entry(path) == FOLDER) return false;
     wait_ms(BUSY_POLL_MS);
     return true;
 }
@@ -249,16 +239,18 @@ bool disk_replace(const char *path, const uint8_t *bytes, int64_t size, char *wh
 
 bool disk_make_folder(const char *path, char *why) {
     char part[PATH_SIZE];
-    if (disk_is_folder(path)) return true;
+    if (disk_entry(path) == FOLDER) return true;
     snprintf(part, sizeof part, "%s", path);
     for (char *at = part + 1; *at; at++) {
         if (*at != '/' && *at != '\\') continue;
         char separator = *at;
         *at = 0;
-        if (!disk_exists(part)) make_one_folder(part, why); /* the last one tells */
+        make_one(part); /* or it is there; the last one tells */
         *at = separator;
     }
-    return make_one_folder(part, why);
+    if (make_one(path)) return true;
+    fail_now(why);
+    return disk_entry(path) == FOLDER; /* made by another process meanwhile */
 }
 
 static bool try_lock(Lock *lock, char *why) {

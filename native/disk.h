@@ -7,6 +7,7 @@
 
 enum { PATH_SIZE = 4096, REASON_SIZE = 160 };
 typedef enum { READ_DONE, READ_ABSENT, READ_FAILED } ReadResult;
+typedef enum { NO_ENTRY, FOLDER, OTHER_ENTRY } DiskEntry;
 typedef struct {
     int file;
     char path[PATH_SIZE + 32];
@@ -16,8 +17,7 @@ typedef struct {
 ReadResult disk_read(const char *path, uint8_t **bytes, int64_t *size, char *why);
 bool disk_replace(const char *path, const uint8_t *bytes, int64_t size, char *why);
 bool disk_rename(const char *from, const char *to, char *why);
-bool disk_exists(const char *path);
-bool disk_is_folder(const char *path);
+DiskEntry disk_entry(const char *path);
 bool disk_make_folder(const char *path, char *why); /* with those above it */
 bool disk_lock(const char *folder, Lock *lock, char *why);
 void disk_unlock(Lock *lock);

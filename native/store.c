@@ -34,7 +34,7 @@ static StoreResult read_profile(const char *path, const Profile *wanted, Profile
 
 /* First name that is not taken. */
 static void free_name(const char *stem, const char *kind, const char *end, char *name) {
-    for (int number = 1; number == 1 || disk_exists(name); number++)
+    for (int number = 1; number == 1 || disk_entry(name) != NO_ENTRY; number++)
         snprintf(name, PATH_SIZE, "%s.%s-%d%s", stem, kind, number, end);
 }
 
@@ -47,13 +47,13 @@ static bool keep_aside(const char *path, char *kept, char *why) {
 static bool can_be_folder(const char *folder, char *message) {
     char part[PATH_SIZE];
     snprintf(part, sizeof part, "%s", folder);
-    while (!disk_exists(part)) {
+    while (disk_entry(part) == NO_ENTRY) {
         char *slash = strrchr(part, '/'), *back = strrchr(part, '\\');
         char *end = back > slash ? back : slash;
         if (!end || end == part) return true;
         *end = 0;
     }
-    if (disk_is_folder(part)) return true;
+    if (disk_entry(part) == FOLDER) return true;
     snprintf(message, MESSAGE_SIZE, "%s: not a folder; choose another profile store", part);
     return false;
 }
