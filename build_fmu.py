@@ -94,7 +94,11 @@ class Progress:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Build and validate; return the exit status."""
-    options = _parser().parse_args(arguments)
+    parser = _parser()
+    options = parser.parse_args(arguments)
+    if options.target and not options.native:
+        parser.error("--target goes with --native")
+    made: list[Path] = []
     names = [options.only] if options.only else list(FMUS)
     for number, name in enumerate(names, start=1):
         progress = Progress(f"[{number}/{len(names)}] {name}")
@@ -109,7 +113,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         progress.end()
         for path in paths:
             print(f"    {path} ({path.stat().st_size / 1024:.0f} KiB)")
-    return 0 if options.only else build_packages(options)
+        made += paths
+    return 0 if options.only else build_packages(made, options)
 
 
 def require_valid(paths: Sequence[Path]) -> None:
@@ -160,11 +165,11 @@ def documented_class(script: Path) -> str:
     return next(ast.get_docstring(node) or "" for node in body if isinstance(node, ast.ClassDef))
 
 
-def build_packages(options: argparse.Namespace) -> int:
-    """Build the SSP packages of the FMI 2.0 FMUs that were built; return the exit status."""
+def build_packages(made: Sequence[Path], options: argparse.Namespace) -> int:
+    """Build the SSP packages of the FMI 2.0 FMUs among those made; return the exit status."""
     folder = options.out / "native" if options.native else options.out
-    if not all((folder / f"{name}.fmu").is_file() for name in FMUS):
-        return 0  # built for platforms that FMI 2.0 does not know
+    if not {folder / f"{name}.fmu" for name in FMUS} <= set(made):
+        return 0  # made for platforms that FMI 2.0 does not know
     try:
         with unpacked(folder) as fmus:
             written = write_packages(folder, fmus)

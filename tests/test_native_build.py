@@ -17,6 +17,7 @@ import build_fmu
 pytest.importorskip("lief", reason="needs the extra: pip install -e .[native]")
 
 import lief
+import pldf.native
 from pldf.native.linking import universal
 from pldf.native.targets import PLATFORMS, TARGETS
 
@@ -209,10 +210,17 @@ def test_the_build_says_which_line_is_refused(
     assert not (tmp_path / "native").exists()
 
 
+def test_targets_are_those_of_native_fmus(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        build_fmu.main(["--target", "linux64"])
+    assert ended.value.code == 2
+    assert "--target goes with --native" in capsys.readouterr().err
+
+
 def test_without_the_extra_the_build_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.delattr("pldf.native.build")
+    monkeypatch.delattr(pldf.native, "build", raising=False)
     monkeypatch.setitem(sys.modules, "pldf.native.build", None)
     assert build_fmu.main(["--native", "--only", SMALLEST, "--out", str(tmp_path)]) == 1
     assert "pip install -e .[native]" in capsys.readouterr().err
