@@ -7,9 +7,12 @@ from pathlib import Path
 
 import pytest
 from built_once import once
+from fmi_host import Host, Slave
 from native_hosts import Hosts, native_archives
+from pldf.fmi.packing.builder import build
 from pldf.study.fmu import Fmu
 from pldf.study.master import unpacked
+from pushed_cart import cart_recipe
 
 import build_fmu
 
@@ -48,3 +51,23 @@ def native_fmus(native_folder: Path) -> Iterator[dict[str, Fmu]]:
 def hosts(tmp_path_factory: pytest.TempPathFactory) -> Hosts:
     """Return the C host and the native FMUs for every platform."""
     return Hosts(tmp_path_factory)
+
+
+@pytest.fixture(scope="session")
+def cart_fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the FMU of a small model with every kind of variable."""
+    return build(cart_recipe(), tmp_path_factory.mktemp("cart"))
+
+
+@pytest.fixture(scope="session")
+def cart_host(cart_fmu: Path, tmp_path_factory: pytest.TempPathFactory) -> Host:
+    """Return that FMU, unpacked."""
+    return Host(cart_fmu, tmp_path_factory.mktemp("unpacked"))
+
+
+@pytest.fixture
+def cart(cart_host: Host) -> Iterator[Slave]:
+    """Return an instance of it."""
+    slave = cart_host.instantiate()
+    yield slave
+    slave.free()
