@@ -2,7 +2,7 @@
 
 Run as a program, since numba reads the processor to compile for when it is imported::
 
-    python -m pldf.native.objects pldf.native.driving_function:MODEL FOLDER linux64 win64
+    python -m pldf.native.objects pldf.native.driving_function:MODEL FOLDER x86_64-linux ...
 
 Only the entry points are visible in an object; they need nothing but a few functions of the C
 library, no Python and no numba at run time.
@@ -166,7 +166,7 @@ def _check(data: bytes) -> None:
     names = needed_by_object(data) - LIBRARY
     if names:
         raise ValueError(
-            f"it needs {', '.join(sorted(names))}: keep to + - * / sqrt floor abs, "
+            f"the object needs {', '.join(sorted(names))}: keep to + - * / sqrt floor abs, "
             "comparisons, records and arrays (pldf/kernel/__init__.py)"
         )
 
@@ -179,7 +179,7 @@ def _reason(error: Exception) -> str:
     inner = str(Path(numba.__file__).parent)
     calls = [(f, int(n)) for f, n in _PLACE.findall(text) if not f.startswith(inner)]
     if not calls:
-        return text
+        return f"{type(error).__name__}: {text}"
     file, number = calls[0]
     more = [x for x in told[1:3] if x.startswith(">>>")]
     said = " ".join([*told[:1], *more])
