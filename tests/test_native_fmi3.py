@@ -338,11 +338,24 @@ def exported(library: Path) -> set[str]:
     return found
 
 
+def declared() -> list[str]:
+    """Return the functions of both standards."""
+    texts = [(headers / f"fmi{version}Functions.h").read_text() for version in "23"]
+    return [name for text in texts for name in re.findall(r"FMI\d_Export \w+\s+(\w+);", text)]
+
+
 def test_exports_every_function_of_both_standards_and_nothing_else(host: Host3) -> None:
-    declared: list[str] = []
-    for version in "23":
-        text = (headers / f"fmi{version}Functions.h").read_text()
-        declared += re.findall(r"FMI._Export \w+TYPE\s+(fmi\w+);", text)
-    assert len(declared) == len(set(declared)) == 119
+    assert len(declared()) == len(set(declared())) == 119
     (library,) = host.folder.glob("binaries/x86_64-linux/*.so")
-    assert exported(library) == set(declared)
+    assert exported(library) == set(declared())
+
+
+def test_no_function_needs_an_instance_to_survive(host: Host3) -> None:
+    (path,) = host.folder.glob("binaries/x86_64-linux/*.so")
+    library = ctypes.CDLL(str(path))
+    for name in declared():
+        if re.search("Version|Platform|Instantiate|FreeInstance", name) is None:
+            assert getattr(library, name)(*[None] * 13) == 3, name
+    assert library.fmi3InstantiateCoSimulation(*[None] * 12) == 0
+    assert library.fmi2Instantiate(*[None] * 7) == 0
+    library.fmi3FreeInstance(None)
