@@ -133,7 +133,9 @@ static Fmu *load(const char *path) {
 
 static void set_parameter(const Fmu *fmu, fmi2Component c, const char *word) {
     fmi2ValueReference reference = (unsigned)atoi(word + 2);
-    fmi2Real value = atof(strchr(word, '=') + 1);
+    const char *text = strchr(word, '=');
+    require(text != NULL, "a parameter without value");
+    fmi2Real value = atof(text + 1);
     fmi2Integer whole = (fmi2Integer)value;
     if (word[1] == 'R') must(fmu->set_real(c, &reference, 1, &value));
     else if (word[1] == 'I') must(fmu->set_integer(c, &reference, 1, &whole));
