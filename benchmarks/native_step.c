@@ -55,8 +55,9 @@ static void must(fmi2Status status) { require(status == fmi2OK, "the FMU refused
 
 static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
                    fmi2String category, fmi2String text, ...) {
+    static int told;
     (void)environment, (void)name, (void)category;
-    if (status > fmi2Warning) fprintf(stderr, "%s\n", text);
+    if (status > fmi2Warning && told++ < 5) fprintf(stderr, "%s\n", text);
 }
 
 static const fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
