@@ -52,6 +52,29 @@ static void clear(Session *s) {
     s->prepared = s->finished = false;
 }
 
+static bool is_hex(char c) { return c && strchr("0123456789abcdefABCDEF", c); }
+
+/* Of file:///p, file:////p, file:/p, or plain; with a slash at the end; with %20. */
+static void path_of_address(const char *address, char *path) {
+    bool coded = address && !strncmp(address, "file:", 5);
+    const char *at = !address ? "" : coded ? address + 5 : address;
+    if (coded && !strncmp(at, "//", 2)) {
+        bool local = !strncmp(at, "//localhost/", 12);
+        at += local ? 11 : at[2] == '/' ? 2 : 0; /* //server/share stays as it is */
+    }
+    if (coded && at[0] == '/' && at[1] && (at[2] == ':' || !strncmp(at + 2, "%3A", 3))) at++;
+    size_t length = 0;
+    for (; *at && length + 1 < PATH_SIZE; at++) {
+        unsigned byte = 0;
+        bool escaped = coded && *at == '%' && is_hex(at[1]) && is_hex(at[2]);
+        if (escaped) sscanf(at + 1, "%2x", &byte);
+        path[length++] = escaped ? (char)byte : *at;
+        if (escaped) at += 2;
+    }
+    while (length > 1 && (path[length - 1] == '/' || path[length - 1] == '\\')) length--;
+    path[length] = 0;
+}
+
 Session *session_new(const char *name, const char *resources, bool events, const char *problem,
                      const Importer *importer) {
     size_t length = name ? strlen(name) : 0;
@@ -214,7 +237,8 @@ static bool fits(Session *s, const void *references, size_t count, const void *v
     if (s && count != value_count)
         return session_tell(s, ERROR_LEVEL, "%llu values for %llu variables",
                             (unsigned long long)value_count, (unsigned long long)count);
-    return s && (count == 0 || (references && values));
+    return s && (count == 0 || (references && values) ||
+                 session_tell(s, ERROR_LEVEL, "NULL in place of references or values"));
 }
 
 bool session_can_get(Session *s, const uint32_t *references, size_t count, const void *values,
@@ -261,28 +285,4 @@ bool session_set_text(Session *s, uint32_t reference, const char *text) {
     memset(place, 0, PATH_SIZE); /* equal states have equal bytes */
     if (text) memcpy(place, text, length);
     return true;
-}
-
-/* Addresses: file:///p, file:////p, file:/p, plain; a slash at the end; %20 */
-
-static bool is_hex(char c) { return c && strchr("0123456789abcdefABCDEF", c); }
-
-void path_of_address(const char *address, char *path) {
-    bool coded = address && !strncmp(address, "file:", 5);
-    const char *at = !address ? "" : coded ? address + 5 : address;
-    if (coded && !strncmp(at, "//", 2)) {
-        bool local = !strncmp(at, "//localhost/", 12);
-        at += local ? 11 : at[2] == '/' ? 2 : 0; /* //server/share stays as it is */
-    }
-    if (coded && at[0] == '/' && at[1] && (at[2] == ':' || !strncmp(at + 2, "%3A", 3))) at++;
-    size_t length = 0;
-    for (; *at && length + 1 < PATH_SIZE; at++) {
-        unsigned byte = 0;
-        bool escaped = coded && *at == '%' && is_hex(at[1]) && is_hex(at[2]);
-        if (escaped) sscanf(at + 1, "%2x", &byte);
-        path[length++] = escaped ? (char)byte : *at;
-        if (escaped) at += 2;
-    }
-    while (length > 1 && (path[length - 1] == '/' || path[length - 1] == '\\')) length--;
-    path[length] = 0;
 }

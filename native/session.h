@@ -1,5 +1,6 @@
 /* One instance between instantiation and release, whatever version of FMI calls it (as
-   pldf/fmi/session.py): FMI's instance is this Session. What returns false has told why. */
+   pldf/fmi/session.py): FMI's instance is this Session. What returns false has told why, unless it
+   was given NULL. */
 #pragma once
 
 #include <stddef.h>
@@ -84,4 +85,3 @@ bool run_prepare(Session *s, State *state, Run *run);
 void run_call(Entry *entry, State *state, Run *run, double step_s); /* if the model has it */
 void run_learn(Session *s);
 void run_release(Run *run);
-void path_of_address(const char *address, char *path); /* file:// or plain */
