@@ -228,8 +228,9 @@ def compiled_host(platform: Platform, path: Path, main: str = "main", *flags: st
     """Compile the C host with the program in ``main`` for a platform."""
     target = TARGETS[platform.target]
     libraries = ["-lm"] if target.suffix == ".dll" else ["-lm", "-ldl"]
-    zig = [sys.executable, "-m", "ziglang", "cc", "-target", target.linker, "-std=gnu11", "-O1"]
-    command = [*zig, *WARNINGS, f"-I{HEADERS}", *flags, *host_sources(main), "-o", str(path)]
+    zig = [sys.executable, "-m", "ziglang", "cc", "-target", target.linker]
+    how = ["-std=gnu11", "-O2", "-s"]  # -s as for FMUs: zig has then compiled its C library
+    command = [*zig, *how, *WARNINGS, f"-I{HEADERS}", *flags, *host_sources(main), "-o", str(path)]
     subprocess.run([*command, *libraries], check=True)
 
 
