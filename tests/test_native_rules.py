@@ -81,8 +81,9 @@ def compiled(path: Path, target: str, source: str, *options: str) -> Path:
     """Compile C for a target into ``path``."""
     file = path.with_suffix(".c")
     file.write_text(source)
-    program = [sys.executable, "-m", "ziglang", "cc", "-target", TARGETS[target].linker, "-O1"]
-    subprocess.run([*program, *options, str(file), "-o", str(path)], check=True)
+    program = [sys.executable, "-m", "ziglang", "cc", "-target", TARGETS[target].linker]
+    how = ["-O2", "-s"]  # as for FMUs: zig has then compiled its C library
+    subprocess.run([*program, *how, *options, str(file), "-o", str(path)], check=True)
     return path
 
 
