@@ -16,7 +16,7 @@ from pldf.kernel.arrays import Floats
 
 from .vehicle_state import VehicleState
 
-INTERNAL_STEP_S = 0.01
+INTERNAL_STEPS_PER_S = 100.0
 GRAVITY_MPS2 = 9.81
 # The drive fades out over this last part of the speed range instead of being switched.
 CUT_OFF_GAIN_PER_S = 1.0
@@ -27,15 +27,19 @@ FINITE_MAX = 1e300
 
 def vehicle_start(st: VehicleState, grade: Floats) -> None:
     """Put the car at its start, driving steadily: the drive force balances the road load."""
+    st.inertia_kg = st.body_mass_kg * st.body_rotating_factor
+    st.mps2_per_n = 1.0 / st.inertia_kg
+    st.drive_rate_per_s = 1.0 / st.body_drive_lag_s
+    st.brake_rate_per_s = 1.0 / st.body_brake_lag_s
     st.s_m = st.start_s_m
     st.speed_mps = st.start_speed_mps
     st.drive_force_n = 0.0
     st.brake_force_n = 0.0
-    load = road_load_n(st, grade)
-    if st.speed_mps > 0.0 and load > 0.0:
-        st.drive_force_n = min(load, drive_force_max_n(st, load))
+    _feel_road(st, grade)
+    if st.speed_mps > 0.0 and st.load_n > 0.0:
+        st.drive_force_n = min(st.load_n, st.drive_limit_n)
     elif st.speed_mps > 0.0:
-        st.brake_force_n = -load
+        st.brake_force_n = -st.load_n
     vehicle_refresh(st, grade)
 
 
@@ -43,20 +47,20 @@ def vehicle_step(st: VehicleState, grade: Floats, step_s: float) -> None:
     """Advance by ``step_s`` seconds in equal internal steps of at most 10 ms."""
     # The margin keeps a communication step of 0.1 s plus rounding at 10 internal steps.
     read_inputs(st)
-    count = max(1, floor(step_s / INTERNAL_STEP_S + 1.0 - 1e-6))
+    count = max(1, floor(step_s * INTERNAL_STEPS_PER_S + 1.0 - 1e-6))
     inner_s = step_s
     if count > 1:  # spares the usual step a division
         inner_s = step_s / count
     for _ in range(count):
         _advance(st, inner_s)
-        st.load_n = road_load_n(st, grade)
+        _feel_road(st, grade)
     _update_motion(st)
 
 
 def vehicle_refresh(st: VehicleState, grade: Floats) -> None:
     """Recompute acceleration and jerk from state and inputs."""
     read_inputs(st)
-    st.load_n = road_load_n(st, grade)
+    _feel_road(st, grade)
     _update_motion(st)
 
 
@@ -73,36 +77,42 @@ def read_inputs(st: VehicleState) -> None:
     st.brake = pedal_travel(st.driver_brake_pedal)
 
 
+def _feel_road(st: VehicleState, grade: Floats) -> None:
+    """Keep what depends on position and speed alone."""
+    st.load_n = road_load_n(st, grade)
+    st.drive_limit_n = drive_force_max_n(st)
+
+
 def _update_motion(st: VehicleState) -> None:
-    load = st.load_n
-    inertia = st.body_mass_kg * st.body_rotating_factor
-    if st.speed_mps <= 0.0 and not _leaves_standstill(st, load):
+    if st.speed_mps <= 0.0 and not _leaves_standstill(st):
         st.acceleration_mps2 = 0.0
         st.jerk_mps3 = 0.0
         return
-    st.acceleration_mps2 = (st.drive_force_n - st.brake_force_n - load) / inertia
-    drive_rate = (drive_demand_n(st, load) - st.drive_force_n) / st.body_drive_lag_s
-    brake_rate = (brake_demand_n(st, load) - st.brake_force_n) / st.body_brake_lag_s
+    st.acceleration_mps2 = (st.drive_force_n - st.brake_force_n - st.load_n) * st.mps2_per_n
+    drive_rate = (drive_demand_n(st) - st.drive_force_n) * st.drive_rate_per_s
+    brake_rate = (brake_demand_n(st) - st.brake_force_n) * st.brake_rate_per_s
     drag_rate = 2.0 * drag_n_per_v2(st) * st.speed_mps * st.acceleration_mps2
-    st.jerk_mps3 = (drive_rate - brake_rate - drag_rate) / inertia
+    st.jerk_mps3 = (drive_rate - brake_rate - drag_rate) * st.mps2_per_n
 
 
 def _advance(st: VehicleState, step_s: float) -> None:
     """One internal step: lags exactly, road load by the midpoint rule."""
-    load = st.load_n
-    drive_demand = drive_demand_n(st, load)
-    brake_demand = brake_demand_n(st, load)
-    drive = lag_mean(st.drive_force_n, drive_demand, step_s / st.body_drive_lag_s)
-    brake = lag_mean(st.brake_force_n, brake_demand, step_s / st.body_brake_lag_s)
-    st.drive_force_n = lag_end(st.drive_force_n, drive_demand, step_s / st.body_drive_lag_s)
-    st.brake_force_n = lag_end(st.brake_force_n, brake_demand, step_s / st.body_brake_lag_s)
-    if st.speed_mps <= 0.0 and not _leaves_standstill(st, load):
+    drive_demand = drive_demand_n(st)
+    brake_demand = brake_demand_n(st)
+    drive_x = step_s * st.drive_rate_per_s
+    brake_x = step_s * st.brake_rate_per_s
+    drive_share = lag_share(drive_x)
+    brake_share = lag_share(brake_x)
+    drive = drive_demand + (st.drive_force_n - drive_demand) * drive_share
+    brake = brake_demand + (st.brake_force_n - brake_demand) * brake_share
+    st.drive_force_n += (drive_demand - st.drive_force_n) * drive_x * drive_share
+    st.brake_force_n += (brake_demand - st.brake_force_n) * brake_x * brake_share
+    if st.speed_mps <= 0.0 and not _leaves_standstill(st):
         return
-    inertia = st.body_mass_kg * st.body_rotating_factor
-    first = (drive - brake - load) / inertia
+    first = (drive - brake - st.load_n) * st.mps2_per_n
     # The load's change over half a step is that of the drag alone; grade changes are slower.
     drag_rate = 2.0 * drag_n_per_v2(st) * st.speed_mps * first
-    _move(st, first - 0.5 * step_s * drag_rate / inertia, step_s)
+    _move(st, first - 0.5 * step_s * drag_rate * st.mps2_per_n, step_s)
 
 
 def _move(st: VehicleState, acceleration_mps2: float, step_s: float) -> None:
@@ -117,54 +127,51 @@ def _move(st: VehicleState, acceleration_mps2: float, step_s: float) -> None:
         st.speed_mps = 0.0
 
 
-def _leaves_standstill(st: VehicleState, load_n: float) -> bool:
+def _leaves_standstill(st: VehicleState) -> bool:
     """Tell whether a standing car starts to move; until somebody wants that, it is held."""
     wanted = st.gas > 0.0 or (st.function_active != 0 and st.request_mps2 > 0.0)
     held = st.brake > 0.0 or not wanted
-    return not held and st.drive_force_n - st.brake_force_n - load_n > 0.0
+    return not held and st.drive_force_n - st.brake_force_n - st.load_n > 0.0
 
 
-def drive_demand_n(st: VehicleState, load_n: float) -> float:
+def drive_demand_n(st: VehicleState) -> float:
     """Drive force asked for by request and gas pedal (N), within what the drive can give."""
     if st.brake > 0.0:
         return 0.0
-    available = drive_force_max_n(st, load_n)
-    demand = st.gas * available
+    demand = st.gas * st.drive_limit_n
     if st.function_active != 0:
-        demand += _request_force_n(st, load_n)
-    return max(0.0, min(demand, available))
+        demand += _request_force_n(st)
+    return max(0.0, min(demand, st.drive_limit_n))
 
 
-def brake_demand_n(st: VehicleState, load_n: float) -> float:
+def brake_demand_n(st: VehicleState) -> float:
     """Brake force (N): the pedal's, else what the request lacks, else recuperation."""
     pedal = st.brake
-    strongest = st.body_mass_kg * st.body_rotating_factor * st.body_brake_max_mps2
+    strongest = st.inertia_kg * st.body_brake_max_mps2
     if pedal > 0.0:
         return pedal * strongest
     gas = st.gas
     if st.function_active != 0:
-        lacking = -_request_force_n(st, load_n) - gas * drive_force_max_n(st, load_n)
+        lacking = -_request_force_n(st) - gas * st.drive_limit_n
         return max(0.0, min(lacking, strongest))
     if gas > 0.0:
         return 0.0
     fade = min(1.0, st.speed_mps / COAST_FADE_MPS)
-    return st.body_mass_kg * st.body_rotating_factor * st.body_coast_decel_mps2 * fade
+    return st.inertia_kg * st.body_coast_decel_mps2 * fade
 
 
-def _request_force_n(st: VehicleState, load_n: float) -> float:
+def _request_force_n(st: VehicleState) -> float:
     """Force that gives the requested acceleration on this grade at this speed (signed)."""
-    inertia = st.body_mass_kg * st.body_rotating_factor
-    return inertia * st.request_mps2 + load_n
+    return st.inertia_kg * st.request_mps2 + st.load_n
 
 
-def drive_force_max_n(st: VehicleState, load_n: float) -> float:
+def drive_force_max_n(st: VehicleState) -> float:
     """Drive force available: force limit, power limit, cut-off at the highest speed."""
     available = st.body_force_max_n
     if available * st.speed_mps > st.body_power_max_w:
         available = st.body_power_max_w / st.speed_mps
     rest = CUT_OFF_GAIN_PER_S * (st.body_speed_max_mps - st.speed_mps)
-    inertia = st.body_mass_kg * st.body_rotating_factor
-    return max(0.0, min(available, inertia * rest + load_n))
+    return max(0.0, min(available, st.inertia_kg * rest + st.load_n))
 
 
 def road_load_n(st: VehicleState, grade: Floats) -> float:
@@ -193,17 +200,14 @@ def grade_at(st: VehicleState, grade: Floats) -> float:
     return grade[i] + (grade[i + 1] - grade[i]) * (st.s_m - i)
 
 
-def lag_end(value: float, demand: float, x: float) -> float:
-    """First-order lag after ``x`` time constants; exp(-x) by its (2, 2) Padé approximant.
+def lag_share(x: float) -> float:
+    """Mean distance of a first-order lag from its demand over ``x`` time constants, over the first.
 
-    The approximant is off by less than x**5/720: 2e-9 at 10 ms and 150 ms, 6e-4 at x = 1.
+    Of the first distance ``x`` times this share is gone at the end. From the (2, 2) Padé
+    approximant of exp(-x), which is off by less than x**5/720: 2e-9 at 10 ms and 150 ms, 6e-4 at
+    x = 1.
     """
-    return value + (demand - value) * x / (1.0 + 0.5 * x + x * x / 12.0)
-
-
-def lag_mean(value: float, demand: float, x: float) -> float:
-    """Mean of the same lag over these ``x`` time constants (no division by the step)."""
-    return demand + (value - demand) / (1.0 + 0.5 * x + x * x / 12.0)
+    return 1.0 / (1.0 + 0.5 * x + x * x * (1.0 / 12.0))
 
 
 def pedal_travel(value: float) -> float:

@@ -100,9 +100,14 @@ class VehicleState(VehicleParameters):
     acceleration_mps2: float = real_output("Ego acceleration", "m/s2")
     jerk_mps3: float = real_output("Change of the acceleration per second", "m/s3")
     # memory
+    inertia_kg: float = 0.0  # these four follow from the parameters
+    mps2_per_n: float = 0.0
+    drive_rate_per_s: float = 0.0
+    brake_rate_per_s: float = 0.0
     drive_force_n: float = 0.0
     brake_force_n: float = 0.0
     load_n: float = 0.0  # road load at the present position and speed
+    drive_limit_n: float = 0.0  # largest drive force there
     request_mps2: float = 0.0  # the inputs as used: finite, pedals within 0 and 1
     gas: float = 0.0
     brake: float = 0.0
