@@ -229,7 +229,8 @@ def compiled_host(platform: Platform, path: Path, main: str = "main", *flags: st
     target = TARGETS[platform.target]
     libraries = ["-lm"] if target.suffix == ".dll" else ["-lm", "-ldl"]
     zig = [sys.executable, "-m", "ziglang", "cc", "-target", target.linker]
-    how = ["-std=gnu11", "-O2", "-s"]  # -s as for FMUs: zig has then compiled its C library
+    # As for FMUs: zig has then compiled its C library.
+    how = ["-std=gnu11", "-O2", "-s", "-fPIC"]
     command = [*zig, *how, *WARNINGS, f"-I{HEADERS}", *flags, *host_sources(main), "-o", str(path)]
     subprocess.run([*command, *libraries], check=True)
 
