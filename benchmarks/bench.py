@@ -25,8 +25,8 @@ from empty_fmu import build_empty_fmu
 from fmpy import read_model_description  # type: ignore[import-untyped]
 from fmu_step import time_fmu
 from kernel_times import STUDY_KM, peak_memory_mb, plan_and_learn, step_times, toppra_s
-from pldf.build_version import build_version
 from pldf.kernel.state import PldfState
+from pldf.study.which_fmus import up_to_date
 
 from vehicle_models.driver_state import DriverState
 from vehicle_models.vehicle_state import VehicleState
@@ -112,7 +112,7 @@ def _native_problem(folder: Path) -> str:
     for path in (folder / f"{name}.fmu" for name in RECORDS):
         if not path.is_file():
             return f"there is no {path}; {rebuild}"
-        if read_model_description(str(path)).version != build_version():
+        if not up_to_date(read_model_description(str(path))):
             return f"{path} is made from other sources; {rebuild}"
     return ""
 

@@ -25,13 +25,13 @@ def copy(tmp_path: Path) -> Path:
     """Return a folder with a copy of both packages."""
     for name, place in PACKAGES.items():
         ignored = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(build_fmu.ROOT / place, tmp_path / name, ignore=ignored)
-    return tmp_path
+        shutil.copytree(build_fmu.ROOT / place, tmp_path / "packages" / name, ignore=ignored)
+    return tmp_path / "packages"
 
 
-def version_of(copy: Path) -> str:
+def version_of(copy: Path, called: str = "build_version") -> str:
     """Return what the copied sources say."""
-    code = "from pldf.build_version import build_version; print(build_version(), end='')"
+    code = f"from pldf import build_version; print(build_version.{called}(), end='')"
     done = subprocess.run(
         [sys.executable, "-c", code],
         cwd=copy,
@@ -43,13 +43,13 @@ def version_of(copy: Path) -> str:
     return done.stdout
 
 
-def changed(copy: Path, file: str) -> str:
+def changed(copy: Path, file: str, called: str = "build_version") -> str:
     """Return the version after one more line in ``file``."""
     path = copy / file
     text = path.read_text()
     path.write_text(text + "# more\n")
     try:
-        return version_of(copy)
+        return version_of(copy, called)
     finally:
         path.write_text(text)
 
@@ -98,6 +98,20 @@ def test_it_changes_with_what_decides_results(copy: Path, file: str) -> None:
 )
 def test_it_does_not_change_with_what_carries_values(copy: Path, file: str) -> None:
     assert changed(copy, file) == build_version()
+
+
+@pytest.mark.parametrize("file", ["pldf/native/linking.py", "vehicle_models/native.py"])
+def test_what_makes_native_fmus_has_its_own_digest(copy: Path, file: str) -> None:
+    """Where the C runtime is at hand, as it is not for packages that pip installed."""
+    assert version_of(copy, "native_making") == ""
+    runtime = copy.parent / "native"
+    shutil.copytree(build_fmu.ROOT / "native", runtime)
+    found = version_of(copy, "native_making")
+    assert re.fullmatch(r"[0-9a-f]{12}", found)
+    assert changed(copy, file, "native_making") != found
+    (runtime / "disk.c").write_text("/* another */")
+    assert version_of(copy, "native_making") != found
+    assert version_of(copy) == build_version()
 
 
 def test_python_fmus_carry_it(fmu_folder: Path) -> None:

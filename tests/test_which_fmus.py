@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from pldf import cli
-from pldf.build_version import build_version
+from pldf.build_version import build_version, native_making
 from pldf.instance import ModelError
 from pldf.study import which_fmus
 from pldf.study.which_fmus import Choice, choose_fmus
@@ -31,6 +31,12 @@ def built(fmu_folder: Path, native_folder: Path, tmp_path_factory: pytest.TempPa
 def stale(monkeypatch: pytest.MonkeyPatch) -> Make:
     """Return a function after which the sources have changed since the FMUs were built."""
     return lambda: monkeypatch.setattr(which_fmus, "build_version", lambda: "0.1.0+0123456789ab")
+
+
+@pytest.fixture
+def other_runtime(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
+    """Return a function after which native FMUs would be made by what has this digest."""
+    return lambda digest: monkeypatch.setattr(which_fmus, "native_making", lambda: digest)
 
 
 @pytest.fixture
@@ -97,6 +103,19 @@ def test_older_sources_are_no_hindrance_for_who_asks_for_them(built: Path, stale
     assert refused(built / "native").endswith(", or drive with them: --fmu native")
 
 
+def test_native_ones_with_an_older_c_runtime_are_passed_over(
+    built: Path, other_runtime: Callable[[str], None]
+) -> None:
+    """The Python ones have none."""
+    other_runtime("0123456789ab")
+    kind, _, (note,) = choose_fmus(built)
+    assert kind == "python"
+    assert f"{built / 'native'}: made from other sources than those installed" in note
+    assert choose_fmus(built, "python").notes == ()
+    other_runtime("")  # the package alone is installed, without the C sources
+    assert choose_fmus(built) == Choice("native", built / "native")
+
+
 def test_native_ones_for_other_platforms_are_passed_over(built: Path, elsewhere: Make) -> None:
     elsewhere()
     kind, _, (note,) = choose_fmus(built)
@@ -124,7 +143,11 @@ def test_the_usual_folder_is_not_named_in_the_command(
 
 def test_the_fmus_built_here_are_up_to_date(built: Path) -> None:
     for path in built.rglob("*.fmu"):
-        assert which_fmus.describe(path).version == build_version()
+        described = which_fmus.describe(path)
+        assert which_fmus.up_to_date(described)
+        assert described.version == build_version()
+        if path.parent.name == "native":
+            assert described.generationTool.endswith(f", native {native_making()}")
 
 
 @pytest.mark.parametrize("kind", [None, *which_fmus.KINDS])

@@ -1,4 +1,4 @@
-"""The version with a digest of the sources that decide results.
+"""What FMUs are made from: the version, and a digest of what makes native ones.
 
 Two FMUs, or an FMU and a study, with the same version give the same results to the bit.
 """
@@ -6,6 +6,7 @@ Two FMUs, or an FMU and a study, with the same version give the same results to 
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -28,25 +29,44 @@ _DECIDING: Final = {
     "vehicle_models": ("*.py", "scripts/*"),
 }
 _CARRYING: Final = frozenset({"native.py", "longitudinal_vehicle.py", "scripted_driver.py"})
+# What makes native FMUs of the kernels, beside the C runtime.
+_MAKING: Final = {"pldf": ("native/*.py",), "vehicle_models": ("native.py",)}
+# The C runtime lies in the repository, not in an installed package.
+_RUNTIME: Final = Path(__file__).resolve().parents[2] / "native"
 
 
 @cache
 def build_version() -> str:
     """Return the package's version, ``+`` and twelve hexadecimal digits."""
-    return f"{__version__}+{_digest(_sources())}"
+    sources = _sources(_DECIDING)
+    deciding = {name: path for name, path in sources.items() if path.name not in _CARRYING}
+    return f"{__version__}+{_digest(deciding)}"
 
 
-def _sources() -> dict[str, Path]:
-    """Return the deciding files by package and relative path."""
+@cache
+def native_making(runtime: Path = _RUNTIME) -> str:
+    """Return twelve hexadecimal digits of what makes native FMUs of the kernels.
+
+    That decides no results, so it is no part of the version; but who changed it expects to drive
+    with FMUs that were made anew. Empty where the C sources, in ``runtime``, are not at hand.
+    """
+    if not (runtime / "model.h").is_file():
+        return ""
+    sources = {f"native/{path.name}": path for path in runtime.glob("*.[ch]")}
+    return _digest(sources | _sources(_MAKING))
+
+
+def _sources(patterns_of: Mapping[str, Sequence[str]]) -> dict[str, Path]:
+    """Return files by package and relative path."""
     found = {}
-    for package, patterns in _DECIDING.items():
+    for package, patterns in patterns_of.items():
         spec = find_spec(package)
         if spec is None or not spec.submodule_search_locations:
             raise ImportError(f"package {package} is not installed")
         folder = Path(spec.submodule_search_locations[0])
         paths = {path for pattern in patterns for path in folder.glob(pattern)}
         for path in paths:
-            if path.is_file() and path.name not in _CARRYING:
+            if path.is_file():
                 found[f"{package}/{path.relative_to(folder).as_posix()}"] = path
     return found
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 from xml.etree.ElementTree import Element, indent, tostring
 
+from ..build_version import native_making
 from ..fmi.description import Model, model_description
 from ..fmi.packing.archive import DESCRIPTION, guid_of, with_guid, with_version, write_archive
 from ..fmi.packing.description3 import model_description3
@@ -168,6 +169,8 @@ def _contents(
     shown = tuple(_as_native(signal) for signal in signals(model))
     about = Model(model.name, model.about, shown, 300.0, native=True)
     root = standard.describe(about, LOG_CATEGORIES)
+    tool = f"{root.get('generationTool')} {native_making(recipe.runtime)}"
+    root.set("generationTool", tool)  # by which ``study.which_fmus`` knows older ones
     indent(root)
     description: Any = tostring(root, encoding="UTF-8", xml_declaration=True)
     licenses = dict(_licenses(targets))

@@ -6,11 +6,11 @@ import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 import fmpy  # type: ignore[import-untyped]
 
-from ..build_version import build_version
+from ..build_version import build_version, native_making
 from ..instance import ModelError
 from ..native.targets import TARGETS
 from .fmu import describe
@@ -70,7 +70,7 @@ class _Found:
 
     kind: Kind
     folder: Path
-    versions: frozenset[str]
+    up_to_date: bool
     runs_here: bool
 
     @property
@@ -78,7 +78,7 @@ class _Found:
         """What is wrong with them; empty if nothing is."""
         if not self.runs_here:
             return f"{self.folder}: native FMUs, but not for this platform ({PLATFORM})"
-        return "" if self.versions == {build_version()} else f"{self.folder}: {_STALE}"
+        return "" if self.up_to_date else f"{self.folder}: {_STALE}"
 
     @property
     def rebuild(self) -> str:
@@ -88,6 +88,17 @@ class _Found:
     @property
     def notes(self) -> tuple[str, ...]:
         return (f"{self.problem}; {self.rebuild}",) if self.problem else ()
+
+
+def up_to_date(described: Any) -> bool:
+    """Tell whether an FMU, as fmpy describes it, was made from the sources installed.
+
+    Where the C runtime's sources are not at hand, the kernels' alone are compared.
+    """
+    if described.version != build_version():
+        return False
+    native = not described.coSimulation.needsExecutionTool
+    return not native or str(described.generationTool).endswith(native_making())
 
 
 def _usual(folder: Path, found: Mapping[Kind, _Found]) -> Choice:
@@ -116,7 +127,7 @@ def _look(folder: Path) -> _Found | None:
     return _Found(
         kind="python" if needs_python else "native",
         folder=folder,
-        versions=frozenset(one.version or "" for one in described),
+        up_to_date=all(up_to_date(one) for one in described),
         runs_here=needs_python or all(_runs_here(path) for path in paths),
     )
 
