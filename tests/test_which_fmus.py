@@ -41,8 +41,8 @@ def other_runtime(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
 
 @pytest.fixture
 def elsewhere(monkeypatch: pytest.MonkeyPatch) -> Make:
-    """Return a function after which this is a platform that FMI 2.0 does not know."""
-    return lambda: monkeypatch.setattr(which_fmus, "PLATFORM", "aarch64-linux")
+    """Return a function after which this is a platform that the native FMUs were not built for."""
+    return lambda: monkeypatch.setattr(which_fmus, "PLATFORM", "x86_64-windows")
 
 
 def refused(folder: Path, kind: which_fmus.Kind | None = None) -> str:
@@ -120,12 +120,26 @@ def test_native_ones_for_other_platforms_are_passed_over(built: Path, elsewhere:
     elsewhere()
     kind, _, (note,) = choose_fmus(built)
     assert kind == "python"
-    assert "not for this platform (aarch64-linux), so the Python FMUs drive" in note
+    assert "not for this platform (x86_64-windows), so the Python FMUs drive" in note
     for folder, chosen in ((built, "native"), (built / "native", None)):
         told = refused(folder, chosen)
-        assert "not for this platform (aarch64-linux)" in told
+        assert "not for this platform (x86_64-windows)" in told
         assert "python build_fmu.py --native" in told
         assert "--fmu native" not in told
+
+
+@pytest.mark.parametrize("platform", ["aarch64-linux", "riscv64-freebsd"])
+def test_nobody_is_sent_to_build_what_cannot_be(
+    platform: str, built: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """FMI 2.0 knows no such platform, or nobody does."""
+    monkeypatch.setattr(which_fmus, "PLATFORM", platform)
+    assert choose_fmus(built) == choose_fmus(built, "python") == Choice("python", built)
+    for folder, kind in ((built, "native"), (built / "native", None), (built / "native", "python")):
+        assert refused(folder, kind) == (
+            f"{folder}: native FMUs of FMI 2.0 do not exist for this platform ({platform}); build "
+            f"Python FMUs with 'python build_fmu.py --out {built}' and drive with --fmu python"
+        )
 
 
 def test_the_usual_folder_is_not_named_in_the_command(

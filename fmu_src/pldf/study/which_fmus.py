@@ -54,6 +54,8 @@ def choose_fmus(folder: Path, kind: Kind | None = None) -> Choice:
         one = _look(place)
         if one is not None:
             found.setdefault(one.kind, one)
+    if not _native_folder():
+        return _without_native(folder, kind, found)
     if kind is None:
         return _usual(folder, found)
     chosen = found.get(kind)
@@ -117,6 +119,17 @@ def _usual(folder: Path, found: Mapping[Kind, _Found]) -> Choice:
     return Choice("python", python.folder, (passed_over, *python.notes))
 
 
+def _without_native(folder: Path, kind: Kind | None, found: Mapping[Kind, _Found]) -> Choice:
+    """Choose on a platform that native FMUs of FMI 2.0 cannot be built for: nothing to note."""
+    python = found.get("python")
+    if kind == "native" or python is None:
+        raise ModelError(
+            f"{folder}: native FMUs of FMI 2.0 do not exist for this platform ({PLATFORM}); build "
+            f"Python FMUs with {_command(folder, 'python')} and drive with --fmu python"
+        )
+    return Choice("python", python.folder, python.notes)
+
+
 def _look(folder: Path) -> _Found | None:
     """Return what is in ``folder``; None if not all three FMUs are."""
     paths = [folder / f"{name}.fmu" for name in PARTS.values()]
@@ -133,11 +146,16 @@ def _look(folder: Path) -> _Found | None:
 
 
 def _runs_here(path: Path) -> bool:
-    if PLATFORM not in TARGETS:
+    if not _native_folder():
         return False
-    target = TARGETS[PLATFORM]
+    library = f"binaries/{_native_folder()}/{path.stem}{TARGETS[PLATFORM].suffix}"
     with zipfile.ZipFile(path) as archive:
-        return f"binaries/{target.fmi2}/{path.stem}{target.suffix}" in archive.namelist()
+        return library in archive.namelist()
+
+
+def _native_folder() -> str:
+    """Return where native FMUs have their library for this platform; empty: they cannot."""
+    return TARGETS[PLATFORM].fmi2 if PLATFORM in TARGETS else ""
 
 
 def _missing(folder: Path, kind: Kind) -> str:
