@@ -77,7 +77,8 @@ def _compile(model: str, folder: Path, targets: Sequence[str]) -> None:
 
 def _digest(model: str) -> str:
     """Return a digest of all that the object files depend on."""
-    total = hashlib.sha256(model.encode())
+    # Numba compiles bytecode, which is another in each version of Python.
+    total = hashlib.sha256(f"{model} {sys.version_info[:2]}\n".encode())
     for name in ("numba", "llvmlite", "numpy"):
         total.update(f"{name} {metadata.version(name)}\n".encode())
     here = Path(__file__).parent
