@@ -24,6 +24,10 @@ typedef struct { /* its index is the value reference */
     double low, high;
 } Variable;
 
+typedef struct { /* value references of two Real parameters */
+    int32_t allowed, used;
+} Bound;
+
 typedef struct {
     const char *guid, *token, *name; /* of FMI 2.0, of FMI 3.0, of the model */
     const Variable *variables;
@@ -39,6 +43,8 @@ typedef struct {
     /* what the user is told about: cell, its texts, cell of the flag or -1, cell of the time */
     int32_t watch, watch_flag, watch_time;
     const char *const *watch_texts;
+    const Bound *bounds; /* none may be weaker than what is used */
+    int32_t bound_count;
     /* the profile, for models with learn: cells and columns */
     int32_t store_text, driver_id, apply_learned, learn_if[2], localization, nodes, intervening;
     int32_t interventions, profile_iteration, profile_status;

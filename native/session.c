@@ -108,6 +108,19 @@ static void watch(Session *s, bool stepped) {
     }
 }
 
+static bool check_bounds(Session *s) {
+    for (int32_t i = 0; i < model.bound_count; i++) {
+        const Variable *allowed = &model.variables[model.bounds[i].allowed];
+        const Variable *used = &model.variables[model.bounds[i].used];
+        double most = s->state.record[allowed->cell].real, value = s->state.record[used->cell].real;
+        if (fabs(value) > fabs(most))
+            return session_tell(s, ERROR_LEVEL, "parameter %s = %g: it bounds every profile, so it "
+                                "must not be weaker than %s = %g",
+                                allowed->name, most, used->name, value);
+    }
+    return true;
+}
+
 static bool check_parameters(Session *s) {
     for (const Variable *v = model.variables; v < model.variables + model.variable_count; v++) {
         if (v->causality > FIXED_PARAMETER || v->kind == KIND_STRING) continue;
@@ -117,7 +130,7 @@ static bool check_parameters(Session *s) {
             return session_tell(s, ERROR_LEVEL, "parameter %s = %.17g: it must lie between %g and %g",
                                 v->name, value, v->low, v->high);
     }
-    return true;
+    return check_bounds(s);
 }
 
 bool session_start_run(Session *s) {

@@ -24,7 +24,7 @@ from .kernel.codes import (
 )
 from .kernel.learning import learn_drive
 from .kernel.preparation import adopt_learned, start_drive
-from .kernel.signals import text_parameter
+from .kernel.signals import signals_of, text_parameter
 from .kernel.state import PldfState
 from .roads import Route, chosen_route, fingerprint, route_arrays
 from .store import (
@@ -45,6 +45,12 @@ INPUT_TEXT: Final = {
 NO_STORE: Final = (
     "no profile store: nothing is loaded or saved. Set the parameter profile_store or the "
     f"environment variable {STORE_VARIABLE} to a folder."
+)
+
+# Bounds of every profile, and what the base profile is planned with: it must keep to them.
+BOUNDS: Final = tuple(
+    (f"learning_{bound}", f"planner_{bound}")
+    for bound in ("lateral_accel_max_mps2", "accel_max_mps2", "accel_min_mps2")
 )
 
 
@@ -199,13 +205,13 @@ class DrivingFunction(Instance[PldfState]):
 
 def check_bounds(st: PldfState) -> None:
     """Raise ModelError if a base profile could break the bounds of a learned one."""
-    for bound in ("lateral_accel_max_mps2", "accel_max_mps2", "accel_min_mps2"):
-        planned = getattr(st, f"planner_{bound}")
-        allowed = getattr(st, f"learning_{bound}")
-        if abs(planned) > abs(allowed):
+    names = {signal.field: signal.name for signal in signals_of(st)}
+    for bound, planned in BOUNDS:
+        allowed, used = getattr(st, bound), getattr(st, planned)
+        if abs(used) > abs(allowed):
             raise ModelError(
-                f"parameter learning.{bound} = {allowed:g}: it bounds every profile, so it must "
-                f"not be weaker than planner.{bound} = {planned:g}"
+                f"parameter {names[bound]} = {allowed:g}: it bounds every profile, so it must "
+                f"not be weaker than {names[planned]} = {used:g}"
             )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 from ..compiled import KERNEL_MODULES
-from ..function import INPUT_TEXT, Files
+from ..function import BOUNDS, INPUT_TEXT, Files
 from ..kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from ..kernel.drive import drive_step, refresh
 from ..kernel.learning import learn_drive
@@ -83,4 +83,5 @@ MODEL: Final = NativeModel(
     kept=3,
     route=RouteArrays,
     watch=Watch("input_state", tuple(INPUT_TEXT[code] for code in sorted(INPUT_TEXT))),
+    bounds=BOUNDS,
 )

@@ -51,6 +51,7 @@ class NativeModel:
         events: named tuple of arrays per line of a script, None without scripts.
         events_if: field and value that ask for a script.
         watch: what the user is told about while driving.
+        bounds: pairs of Real parameters; the first one, a bound, must not be weaker than the second.
     """
 
     name: str
@@ -66,6 +67,7 @@ class NativeModel:
     route_if: tuple[str, int] = ("", 0)
     events: type[Any] | None = None
     events_if: tuple[str, int] = ("", 0)
+    bounds: tuple[tuple[str, str], ...] = ()
 
     def first(self, kind: type[Any], field: str = "") -> int:
         """Return the column of ``kind``'s first array, or of the one named ``field``."""

@@ -52,6 +52,9 @@ def source(model: NativeModel, guid: str, token: str) -> str:
     lines += [f"    {_cell(f.default)}, /* {f.name} */" for f in fields(model.record)]
     lines += ["};", "", "static const char *const watch_texts[] = {"]
     lines += [f"    {_text(text)}," for text in model.watch.texts]
+    if model.bounds:
+        lines += ["};", "", "static const Bound bounds[] = {"]
+        lines += [f"    {{{', '.join(_references(pair, model))}}}," for pair in model.bounds]
     lines += ["};", "", "const Model model = {"]
     lines += [f"    .guid = {_text(guid)},", f"    .token = {_text(token)},"]
     lines += [f"    .{name} = {value}," for name, value in _members(model, cells)]
@@ -73,6 +76,11 @@ def _variable(signal: Signal, model: NativeModel) -> Iterator[str]:
     low, high = (0.0, 1.0) if signal.kind == "Boolean" else bounds(signal)
     yield _number(low)
     yield _number(high)
+
+
+def _references(names: tuple[str, ...], model: NativeModel) -> Iterator[str]:
+    known = [signal.field for signal in signals(model)]
+    return (str(known.index(name)) for name in names)
 
 
 def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
@@ -99,6 +107,8 @@ def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
     yield "watch_flag", str(cells.index(model.watch.flag) if model.watch.once else -1)
     yield "watch_time", str(0 if model.watch.once else cells.index("time_ns"))
     yield "watch_texts", "watch_texts"
+    yield "bounds", "bounds" if model.bounds else "NULL"
+    yield "bound_count", str(len(model.bounds))
     if "learn" in model.entries:
         yield from _learning(model, cells, texts)
 
