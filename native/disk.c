@@ -27,6 +27,11 @@ static bool fail(char *why, const char *reason) {
     return false;
 }
 
+static bool leaves_room(long long length, char *why) {
+    snprintf(why, REASON_SIZE, "%lld bytes long, at most %d are possible", length, FOLDER_SIZE - 1);
+    return length < FOLDER_SIZE;
+}
+
 #ifdef _WIN32 /* what POSIX calls otherwise, with paths in UTF-16 */
 
 #define O_RDONLY _O_RDONLY
@@ -96,14 +101,18 @@ static bool take_lock(int file, const char *path) {
 
 static void wait_ms(int ms) { Sleep((DWORD)ms); }
 
-bool disk_absolute(const char *path, char *absolute) {
+bool disk_absolute(const char *path, char *absolute, char *why) {
     Wide w, full;
-    return narrow(GetFullPathNameW(wide(path, w), PATH_SIZE, full, NULL), full, absolute);
+    DWORD length = GetFullPathNameW(wide(path, w), PATH_SIZE, full, NULL);
+    if (!narrow(length, full, absolute)) return fail(why, "not a path, in UTF-8 and not too long");
+    return leaves_room((long long)strlen(absolute), why);
 }
 
 bool disk_environment(const char *name, char *value) {
     Wide w, found;
-    return narrow(GetEnvironmentVariableW(wide(name, w), found, PATH_SIZE), found, value);
+    DWORD length = GetEnvironmentVariableW(wide(name, w), found, PATH_SIZE);
+    if (!narrow(length, found, value)) value[0] = 0;
+    return length > 0;
 }
 
 #else
@@ -159,15 +168,16 @@ static void wait_ms(int ms) {
     nanosleep(&time, NULL);
 }
 
-bool disk_absolute(const char *path, char *absolute) {
+bool disk_absolute(const char *path, char *absolute, char *why) {
     char here[PATH_SIZE] = "";
-    if (path[0] != '/' && !getcwd(here, sizeof here)) return false;
-    return snprintf(absolute, PATH_SIZE, "%s%s%s", here, *here ? "/" : "", path) < PATH_SIZE;
+    if (path[0] != '/' && !getcwd(here, sizeof here)) return fail_now(why);
+    return leaves_room(snprintf(absolute, PATH_SIZE, "%s%s%s", here, *here ? "/" : "", path), why);
 }
 
 bool disk_environment(const char *name, char *value) {
     const char *found = getenv(name);
-    return found && *found && snprintf(value, PATH_SIZE, "%s", found) < PATH_SIZE;
+    if (found) snprintf(value, PATH_SIZE, "%s", found);
+    return found && *found;
 }
 
 #endif

@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { PATH_SIZE = 4096, REASON_SIZE = 160 };
+/* A store's folder leaves room for the names in it: "/driver-N_route-KEY.pldf.refused-N.tmp". */
+enum { PATH_SIZE = 4096, FOLDER_SIZE = PATH_SIZE - 96, REASON_SIZE = 160 };
 typedef enum { READ_DONE, READ_ABSENT, READ_FAILED } ReadResult;
 typedef enum { NO_ENTRY, FOLDER, OTHER_ENTRY } DiskEntry;
 typedef struct {
@@ -21,5 +22,6 @@ DiskEntry disk_entry(const char *path);
 bool disk_make_folder(const char *path, char *why); /* with those above it */
 bool disk_lock(const char *folder, Lock *lock, char *why);
 void disk_unlock(Lock *lock);
-bool disk_absolute(const char *path, char *absolute);
-bool disk_environment(const char *name, char *value);
+/* Of a store's folder; false if the path is too long or no text of this system. */
+bool disk_absolute(const char *path, char *absolute, char *why);
+bool disk_environment(const char *name, char *value); /* true, and cut or empty: cannot be used */

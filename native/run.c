@@ -74,19 +74,28 @@ static bool learns(const State *state) {
     return state->record[model.learn_if[0]].integer || state->record[model.learn_if[1]].integer;
 }
 
-static void find_store(Session *s, const State *state, Run *run) {
-    char folder[PATH_SIZE] = "";
+/* Fills in the folder; if there is none, returns and tells why. */
+static int64_t find_store(Session *s, const State *state, Run *run) {
+    char found[PATH_SIZE] = "", why[REASON_SIZE];
     const char *given = state->texts[model.store_text];
-    if (*given || disk_environment("PLDF_PROFILE_STORE", folder))
-        disk_absolute(*given ? given : folder, run->folder);
-    if (!*run->folder && (learns(state) || state->record[model.apply_learned].integer))
+    if (*given || disk_environment("PLDF_PROFILE_STORE", found)) {
+        if (!*given) given = found;
+        if (disk_absolute(given, run->folder, why)) return PROFILE_BASE;
+        run->folder[0] = 0;
+        session_tell(s, WARNING, "%s: not a possible profile store: %s; nothing is loaded or saved",
+                     given, why);
+        return PROFILE_REFUSED;
+    }
+    if (learns(state) || state->record[model.apply_learned].integer)
         session_tell(s, WARNING, "no profile store: nothing is loaded or saved. Set the parameter "
                      "profile_store or the environment variable PLDF_PROFILE_STORE to a folder.");
+    return PROFILE_NOT_PERSISTED;
 }
 
-static int64_t load_profile(Session *s, Run *run) {
+static int64_t load_profile(Session *s, const State *state, Run *run) {
     char message[MESSAGE_SIZE];
-    if (!*run->folder) return PROFILE_NOT_PERSISTED;
+    int64_t status = find_store(s, state, run);
+    if (status != PROFILE_BASE) return status;
     StoreResult found = store_load(run->folder, &run->stored, message);
     if (found == STORE_LOADED && run->stored.count) return PROFILE_LOADED;
     if (found != STORE_REFUSED) return PROFILE_BASE;
@@ -99,8 +108,7 @@ static void follow_stored(Session *s, State *state, Run *run) {
     int64_t nodes = state->nodes;
     p->driver = state->record[model.driver_id].integer;
     p->nodes = nodes;
-    find_store(s, state, run);
-    state->record[model.profile_status].integer = load_profile(s, run);
+    state->record[model.profile_status].integer = load_profile(s, state, run);
     int64_t count = p->bytes ? p->count : 0;
     state->record[model.profile_iteration].integer = count;
     if (!count || !state->record[model.apply_learned].integer) return;

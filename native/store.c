@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { KEPT_MAX = 9999 };
+
 static void path_of(const char *folder, const Profile *wanted, char *path) {
     snprintf(path, PATH_SIZE, "%s/driver-%06lld_route-%s.pldf", folder, (long long)wanted->driver,
              wanted->route);
@@ -33,14 +35,17 @@ static StoreResult read_profile(const char *path, const Profile *wanted, Profile
 }
 
 /* First name that is not taken. */
-static void free_name(const char *stem, const char *kind, const char *end, char *name) {
-    for (int number = 1; number == 1 || disk_entry(name) != NO_ENTRY; number++)
+static bool free_name(const char *stem, const char *kind, const char *end, char *name, char *why) {
+    for (int number = 1; number <= KEPT_MAX; number++) {
         snprintf(name, PATH_SIZE, "%s.%s-%d%s", stem, kind, number, end);
+        if (disk_entry(name) == NO_ENTRY) return true;
+    }
+    snprintf(why, REASON_SIZE, "%d files of it are kept already", KEPT_MAX);
+    return false;
 }
 
 static bool keep_aside(const char *path, char *kept, char *why) {
-    free_name(path, "refused", "", kept);
-    return disk_rename(path, kept, why);
+    return free_name(path, "refused", "", kept, why) && disk_rename(path, kept, why);
 }
 
 /* A file in the place of the folder means that nothing can ever be saved. */
@@ -60,52 +65,61 @@ static bool can_be_folder(const char *folder, char *message) {
 
 StoreResult store_load(const char *folder, Profile *profile, char *message) {
     char path[PATH_SIZE], kept[PATH_SIZE], why[REASON_SIZE] = "", again[REASON_SIZE] = "";
+    bool aside = false;
     Profile found;
     Lock lock;
     if (!can_be_folder(folder, message)) return STORE_REFUSED;
     path_of(folder, profile, path);
     StoreResult result = read_profile(path, profile, &found, why);
     if (result == STORE_REFUSED) { /* again under the lock: somebody may have dealt with it */
-        snprintf(kept, sizeof kept, "left in its place");
         if (disk_lock(folder, &lock, again)) {
             result = read_profile(path, profile, &found, why);
-            if (result == STORE_REFUSED && !keep_aside(path, kept, again))
-                snprintf(kept, sizeof kept, "left in its place");
+            aside = result == STORE_REFUSED && keep_aside(path, kept, again);
             disk_unlock(&lock);
         }
     }
     if (result == STORE_LOADED) *profile = found;
     if (result == STORE_REFUSED)
         snprintf(message, MESSAGE_SIZE,
-                 "%s: %s; kept: %s; the drive goes on with the base profile", path, why, kept);
+                 "%s: %s; %s%s%s; the drive goes on with the base profile", path, why,
+                 aside ? "kept as " : "left in its place (", aside ? kept : again, aside ? "" : ")");
     return result;
+}
+
+static Level not_saved(const char *path, const char *why, char *message) {
+    snprintf(message, MESSAGE_SIZE, "profile not saved: %s: %s, what was there is unchanged; make "
+             "room there, or choose another folder", path, why);
+    return ERROR_LEVEL;
 }
 
 /* Under the lock: puts the bytes where they belong. */
 static Level put(const char *path, const Profile *ours, const uint8_t *bytes, int64_t size,
                  char *message) {
-    char kept[PATH_SIZE], stem[PATH_SIZE], why[REASON_SIZE] = "";
+    char kept[PATH_SIZE], stem[PATH_SIZE], why[REASON_SIZE] = "", again[REASON_SIZE] = "";
     Profile present;
     Level level = INFO;
     StoreResult found = read_profile(path, ours, &present, why);
-    if (found == STORE_LOADED && !profile_same_history(&present, ours)) {
+    bool late = found == STORE_LOADED && !profile_same_history(&present, ours);
+    profile_free(&present);
+    if (late) {
         snprintf(stem, sizeof stem, "%.*s", (int)(strlen(path) - strlen(".pldf")), path);
-        free_name(stem, "conflict", ".pldf", kept);
+        if (!free_name(stem, "conflict", ".pldf", kept, why)) return not_saved(path, why, message);
         snprintf(message, MESSAGE_SIZE,
                  "%s: changed by another process during this drive and left as it is; what this "
                  "drive learned is kept in %s", path, kept);
         path = kept;
         level = WARNING;
-    } else if (found == STORE_REFUSED && keep_aside(path, kept, why)) {
+    } else if (found == STORE_REFUSED) {
+        if (!keep_aside(path, kept, again)) {
+            snprintf(message, MESSAGE_SIZE, "profile not saved: %s: %s; it is left as it was, since "
+                     "it cannot be renamed: %s; choose another folder", path, why, again);
+            return ERROR_LEVEL;
+        }
         snprintf(message, MESSAGE_SIZE, "%s: not a sound profile; kept as %s, a new one took its "
                  "place", path, kept);
         level = WARNING;
     }
-    profile_free(&present);
-    if (disk_replace(path, bytes, size, why)) return level;
-    snprintf(message, MESSAGE_SIZE, "profile not saved: %s: %s, what was there is unchanged; make "
-             "room there, or choose another folder", path, why);
-    return ERROR_LEVEL;
+    return disk_replace(path, bytes, size, why) ? level : not_saved(path, why, message);
 }
 
 Level store_save(const char *folder, const Profile *profile, const Lesson *lesson, char *message) {
