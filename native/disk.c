@@ -44,6 +44,7 @@ static bool leaves_room(long long length, char *why) {
 #define fstat _fstat64
 typedef struct _stat64 Status;
 typedef wchar_t Wide[PATH_SIZE];
+static const char SEPARATORS[] = "/\\";
 enum { BUSY_WHILE_OPEN = 1 }; /* a file is refused for the moment in which somebody else has it */
 
 static const wchar_t *wide(const char *path, Wide out) {
@@ -120,6 +121,7 @@ bool disk_environment(const char *name, char *value) {
 #define O_NEW (O_WRONLY | O_CREAT | O_EXCL)
 #define O_LOCK (O_RDWR | O_CREAT)
 typedef struct stat Status;
+static const char SEPARATORS[] = "/";
 enum { BUSY_WHILE_OPEN = 0 };
 
 static bool fail_now(char *why) { return fail(why, strerror(errno)); }
@@ -247,12 +249,19 @@ bool disk_replace(const char *path, const uint8_t *bytes, int64_t size, char *wh
     return false;
 }
 
+bool disk_parent(char *path) {
+    size_t length = strlen(path);
+    while (length > 0 && !strchr(SEPARATORS, path[length - 1])) length--;
+    if (length > 1) path[length - 1] = 0;
+    return length > 1;
+}
+
 bool disk_make_folder(const char *path, char *why) {
     char part[PATH_SIZE];
     if (disk_entry(path) == FOLDER) return true;
     snprintf(part, sizeof part, "%s", path);
     for (char *at = part + 1; *at; at++) {
-        if (*at != '/' && *at != '\\') continue;
+        if (!strchr(SEPARATORS, *at)) continue;
         char separator = *at;
         *at = 0;
         make_one(part); /* or it is there; the last one tells */

@@ -19,6 +19,7 @@ ReadResult disk_read(const char *path, uint8_t **bytes, int64_t *size, char *why
 bool disk_replace(const char *path, const uint8_t *bytes, int64_t size, char *why);
 bool disk_rename(const char *from, const char *to, char *why);
 DiskEntry disk_entry(const char *path);
+bool disk_parent(char *path); /* cuts the last name off, unless nothing is left then */
 bool disk_make_folder(const char *path, char *why); /* with those above it */
 bool disk_lock(const char *folder, Lock *lock, char *why);
 void disk_unlock(Lock *lock);

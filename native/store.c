@@ -52,12 +52,8 @@ static bool keep_aside(const char *path, char *kept, char *why) {
 static bool can_be_folder(const char *folder, char *message) {
     char part[PATH_SIZE];
     snprintf(part, sizeof part, "%s", folder);
-    while (disk_entry(part) == NO_ENTRY) {
-        char *slash = strrchr(part, '/'), *back = strrchr(part, '\\');
-        char *end = back > slash ? back : slash;
-        if (!end || end == part) return true;
-        *end = 0;
-    }
+    while (disk_entry(part) == NO_ENTRY)
+        if (!disk_parent(part)) return true;
     if (disk_entry(part) == FOLDER) return true;
     snprintf(message, MESSAGE_SIZE, "%s: not a folder; choose another profile store", part);
     return false;
