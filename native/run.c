@@ -25,16 +25,19 @@ static bool wants(const State *state, int32_t cell, int64_t value) {
 
 static bool load(Session *s, const State *state, const char *kind, int32_t text, int32_t id,
                  int64_t columns, Prepared *found) {
-    char path[PATH_SIZE + 64], why[REASON_SIZE] = "there is no such file";
+    char path[PATH_SIZE + 64], why[REASON_SIZE] = "there is no such file", help[REASON_SIZE];
     const char *given = text >= 0 ? state->texts[text] : "";
     long long number = (long long)state->record[id].integer;
+    snprintf(help, sizeof help, "a native FMU reads prepared files, see 'pldf %s --help'", kind);
+    if (!*given && !*s->resources)
+        return session_tell(s, ERROR_LEVEL, "no %s: the importer named no folder of resources, or "
+                            "one with a path of more than %d bytes", kind, PATH_SIZE - 1);
     if (*given) snprintf(path, sizeof path, "%s", given);
     else snprintf(path, sizeof path, "%s/%s/%lld.prepared", s->resources, kind, number);
     return (disk_read(path, &found->bytes, &found->size, why) == READ_DONE &&
             prepared_parse(found, kind, columns, why)) ||
            session_tell(s, ERROR_LEVEL, "%s: %s; %s", path, why,
-                        *given ? "a native FMU reads prepared files, see 'pldf route --help'"
-                               : "choose another number, or unpack the FMU again");
+                        *given ? help : "choose another number, or unpack the FMU again");
 }
 
 static bool load_both(Session *s, const State *state, Prepared *route, Prepared *script) {

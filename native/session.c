@@ -54,15 +54,26 @@ static void clear(Session *s) {
 
 static bool is_hex(char c) { return c && strchr("0123456789abcdefABCDEF", c); }
 
-/* Of file:///p, file:////p, file:/p, or plain; with a slash at the end; with %20. */
+/* Capitals or not; `with` has none. */
+static bool starts(const char *text, const char *with) {
+    while (*with && (*text | 0x20) == *with) text++, with++;
+    return !*with;
+}
+
+static bool has_drive(const char *at) {
+    return *at && (starts(at + 1, ":") || starts(at + 1, "%3a"));
+}
+
+/* Of file:///p, file:////p, file:/p, file://C:/p, or plain; with a slash at the end; with %20.
+   Empty if it is too long. */
 static void path_of_address(const char *address, char *path) {
-    bool coded = address && !strncmp(address, "file:", 5);
+    bool coded = address && starts(address, "file:");
     const char *at = !address ? "" : coded ? address + 5 : address;
     if (coded && !strncmp(at, "//", 2)) {
-        bool local = !strncmp(at, "//localhost/", 12);
-        at += local ? 11 : at[2] == '/' ? 2 : 0; /* //server/share stays as it is */
+        bool local = starts(at, "//localhost/"), whole = at[2] == '/' || has_drive(at + 2);
+        at += local ? 11 : whole ? 2 : 0; /* //server/share stays as it is */
     }
-    if (coded && at[0] == '/' && at[1] && (at[2] == ':' || !strncmp(at + 2, "%3A", 3))) at++;
+    if (coded && at[0] == '/' && has_drive(at + 1)) at++;
     size_t length = 0;
     for (; *at && length + 1 < PATH_SIZE; at++) {
         unsigned byte = 0;
@@ -72,7 +83,7 @@ static void path_of_address(const char *address, char *path) {
         if (escaped) at += 2;
     }
     while (length > 1 && (path[length - 1] == '/' || path[length - 1] == '\\')) length--;
-    path[length] = 0;
+    path[*at ? 0 : length] = 0;
 }
 
 Session *session_new(const char *name, const char *resources, bool events, const char *problem,

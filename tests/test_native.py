@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fmi_host import Host
@@ -56,13 +57,7 @@ def test_refuses_parameters_and_routes_with_a_reason(native_folder: Path, tmp_pa
         ({"route_file": str(tmp_path / "none.xodr")}, "no such file"),
         ({"route_file": __file__}, "pldf route"),
     ):
-        slave = host.instantiate()
-        slave.set(**values)
-        slave.fmu.setupExperiment(startTime=0.0)
-        slave.fmu.enterInitializationMode()
-        assert slave.status("exitInitializationMode") == 3
-        assert text in slave.texts()[-1]
-        slave.free()
+        assert text in reason(host, **values)
 
 
 def test_drives_an_exported_route(native_folder: Path, tmp_path: Path) -> None:
@@ -75,6 +70,48 @@ def test_drives_an_exported_route(native_folder: Path, tmp_path: Path) -> None:
         seen.append(slave.outputs())
         slave.free()
     assert seen[0] == seen[1]
+
+
+def reason(host: Host, location: str | None = None, **values: Any) -> str:
+    """Return why an instance with these resources and parameters cannot be initialized."""
+    slave = host.instantiate(location=location)
+    slave.set(**values)
+    slave.fmu.setupExperiment(startTime=0.0)
+    slave.fmu.enterInitializationMode()
+    assert slave.status("exitInitializationMode") == 3
+    text = slave.texts()[-1]
+    slave.free()
+    return text
+
+
+@pytest.mark.parametrize(
+    ("location", "path"),
+    [
+        ("file:///no%20where/", "/no where/"),
+        ("FILE:/nowhere", "/nowhere/"),
+        ("File://LocalHost/nowhere", "/nowhere/"),
+        ("file:///q%3a/nowhere", "q:/nowhere/"),
+        ("file:///Q%3A/nowhere", "Q:/nowhere/"),
+        ("file://Q:/nowhere", "Q:/nowhere/"),
+        ("file://q%3A/nowhere", "q:/nowhere/"),
+        ("file://server/nowhere", "//server/nowhere/"),
+        ("/nowhere%20", "/nowhere%%20/"),  # FMI 2.0 doubles it in messages
+    ],
+)
+def test_finds_the_resources_by_address(native_folder: Path, location: str, path: str) -> None:
+    text = reason(Host(native_folder / "AdaptivePLDF.fmu"), location)
+    assert text.startswith(f"{path}route/0.prepared: ")
+
+
+def test_tells_that_there_are_no_resources(native_folder: Path) -> None:
+    host = Host(native_folder / "AdaptivePLDF.fmu")
+    for location in ("file:", "file:///" + "x" * 4096):
+        assert "named no folder of resources" in reason(host, location)
+
+
+def test_tells_how_a_script_is_prepared(native_folder: Path) -> None:
+    host = Host(native_folder / "ScriptedDriver.fmu")
+    assert "'pldf script --help'" in reason(host, script_file=__file__, kind=1)
 
 
 def test_tells_that_a_damaged_profile_is_kept_aside(
