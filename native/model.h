@@ -15,7 +15,7 @@ typedef void Entry(Cell *, double *, int64_t, int64_t, double);
 
 enum { KIND_REAL = 1, KIND_INTEGER = 2, KIND_BOOLEAN = 4, KIND_STRING = 8, KIND_ENUMERATION = 16 };
 enum { KIND_TIME = 32 }; /* FMI 3.0 has it behind the last variable */
-enum { PARAMETER, FIXED_PARAMETER, INPUT, OUTPUT };
+enum { PARAMETER, INPUT, OUTPUT }; /* parameters are fixed */
 
 typedef struct { /* its index is the value reference */
     const char *name;

@@ -119,11 +119,11 @@ static void watch(Session *s, bool stepped) {
     }
 }
 
-static bool check_bounds(Session *s) {
+static bool check_bounds(Session *s, const Cell *record) {
     for (int32_t i = 0; i < model.bound_count; i++) {
         const Variable *allowed = &model.variables[model.bounds[i].allowed];
         const Variable *used = &model.variables[model.bounds[i].used];
-        double most = s->state.record[allowed->cell].real, value = s->state.record[used->cell].real;
+        double most = record[allowed->cell].real, value = record[used->cell].real;
         if (fabs(value) > fabs(most))
             return session_tell(s, ERROR_LEVEL, "parameter %s = %g: it bounds every profile, so it "
                                 "must not be weaker than %s = %g",
@@ -132,27 +132,32 @@ static bool check_bounds(Session *s) {
     return true;
 }
 
-static bool check_parameters(Session *s) {
+static bool check_parameters(Session *s, const Cell *record) {
     for (const Variable *v = model.variables; v < model.variables + model.variable_count; v++) {
-        if (v->causality > FIXED_PARAMETER || v->kind == KIND_STRING) continue;
-        Cell cell = s->state.record[v->cell];
+        if (v->causality != PARAMETER || v->kind == KIND_STRING) continue;
+        Cell cell = record[v->cell];
         double value = v->kind == KIND_REAL ? cell.real : (double)cell.integer;
         if (!(value >= v->low && value <= v->high))
             return session_tell(s, ERROR_LEVEL, "parameter %s = %.17g: it must lie between %g and %g",
                                 v->name, value, v->low, v->high);
     }
-    return check_bounds(s);
+    return check_bounds(s, record);
 }
 
-bool session_start_run(Session *s) {
+bool session_make_run(Session *s, State *state, Run *run) {
+    Cell given[MODEL_CELLS];
+    memcpy(given, state->record, sizeof given);
+    memcpy(state->record, model.defaults, sizeof given);
+    for (const Variable *v = model.variables; v < model.variables + model.variable_count; v++)
+        if (v->causality != OUTPUT && v->kind != KIND_STRING) state->record[v->cell] = given[v->cell];
+    return check_parameters(s, given) && run_prepare(s, state, run);
+}
+
+/* With what was set so far; the old one stays if that fails. */
+static bool start_run(Session *s) {
     State fresh = s->state;
     Run run = {0};
-    s->state.ready = s->prepared = false;
-    memcpy(fresh.record, model.defaults, sizeof fresh.record);
-    for (const Variable *v = model.variables; v < model.variables + model.variable_count; v++)
-        if (v->causality != OUTPUT && v->kind != KIND_STRING)
-            fresh.record[v->cell] = s->state.record[v->cell];
-    if (!check_parameters(s) || !run_prepare(s, &fresh, &run)) return false;
+    if (!session_make_run(s, &fresh, &run)) return false;
     run_release(&s->run);
     s->run = run;
     s->state = fresh;
@@ -163,7 +168,7 @@ bool session_start_run(Session *s) {
 }
 
 static bool bring_up_to_date(Session *s) {
-    if (s->state.phase == INITIALIZING && !s->state.ready) return session_start_run(s);
+    if (s->state.phase == INITIALIZING && !s->state.ready) return start_run(s);
     if (s->state.stale && (s->state.phase == INITIALIZING || s->state.phase == STEPPING)) {
         run_call(model.refresh, &s->state, &s->run, 0.0);
         s->state.stale = 0;
@@ -288,12 +293,12 @@ bool session_can_set(Session *s, const uint32_t *references, size_t count, const
         if (!v) return false;
         if (v->causality == OUTPUT)
             return session_tell(s, ERROR_LEVEL, "%s is an output, it cannot be set", v->name);
-        unsigned late = v->causality == FIXED_PARAMETER ? 0 : AT_STEP;
+        unsigned late = v->causality == PARAMETER ? 0 : AT_STEP;
         if (!session_allows(s, v->name, AT_START | IN_INITIALIZATION | late)) return false;
         parameters = parameters || v->causality != INPUT;
     }
     s->state.stale = 1;
-    if (parameters) s->state.ready = s->state.phase == STEPPING;
+    if (parameters) s->state.ready = s->prepared = false;
     return true;
 }
 

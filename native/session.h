@@ -37,7 +37,8 @@ typedef struct { /* its logger, as it came, and the function that calls it by th
 struct Session {
     State state;
     Run run;
-    bool prepared, finished, events; /* events: tell INFO messages too */
+    bool prepared; /* the run follows from the parameters of the state */
+    bool finished, events; /* events: tell INFO messages too */
     double stop_time;
     char resources[PATH_SIZE];
     Importer importer;
@@ -77,8 +78,8 @@ bool session_serialized_size(Session *s, const void *state, size_t *size);
 bool session_serialize(Session *s, const void *state, void *bytes, size_t size);
 bool session_deserialize(Session *s, const void *bytes, size_t size, void **state);
 
-/* Starts a run with what was set so far; the old one stays if that fails. */
-bool session_start_run(Session *s);
+/* Makes the run that follows from a state's parameters, and the rest of that state. */
+bool session_make_run(Session *s, State *state, Run *run);
 
 /* What a run needs from the disk, and what it leaves there (run.c) */
 bool run_prepare(Session *s, State *state, Run *run);

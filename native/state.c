@@ -42,32 +42,40 @@ bool session_get_state(Session *s, void **state) {
 static bool same_parameters(const State *a, const State *b) {
     for (int32_t i = 0; i < model.variable_count; i++) {
         const Variable *v = &model.variables[i];
-        if (v->kind != KIND_STRING && v->causality <= FIXED_PARAMETER &&
+        if (v->kind != KIND_STRING && v->causality == PARAMETER &&
             a->record[v->cell].integer != b->record[v->cell].integer)
             return false;
     }
     return memcmp(a->texts, b->texts, sizeof a->texts) == 0;
 }
 
-bool session_set_state(Session *s, const void *from) {
-    const State *state = from;
-    if (!s || !state) return false;
-    State before = s->state;
-    bool whole = is_whole(state);
-    if (whole && !(s->prepared && same_parameters(&s->state, state))) {
-        s->state = *state; /* what is not in it follows from its parameters */
-        if (!session_start_run(s)) return s->state = before, false;
+/* What is not in the state of a drive follows from its parameters, unless it is there already. */
+static bool restore_drive(Session *s, const State *state) {
+    bool here = s->prepared && same_parameters(&s->state, state);
+    State found = here ? s->state : *state;
+    Run run = {0};
+    if (!here && !session_make_run(s, &found, &run)) return false;
+    if (found.nodes != state->nodes || found.rows != state->rows) {
+        run_release(&run);
+        return session_tell(s, ERROR_LEVEL, "the route of this state has changed; not restored");
     }
-    int64_t nodes = s->state.nodes, rows = s->state.rows; /* of the block */
-    bool fits = nodes == state->nodes && rows == state->rows &&
-                state->size == (int64_t)sizeof *state + 8 * kept_values(nodes, rows);
-    s->state = whole && !fits ? before : *state;
-    s->state.nodes = nodes;
-    s->state.rows = rows;
-    if (!whole) s->state.ready = 0;
-    else if (fits) take_columns(s, (const double *)(state + 1));
-    return !whole || fits ||
-           session_tell(s, ERROR_LEVEL, "the route of this state has changed; not restored");
+    if (!here) {
+        run_release(&s->run);
+        s->run = run;
+    }
+    s->state = *state;
+    s->prepared = true;
+    take_columns(s, (const double *)(state + 1));
+    return true;
+}
+
+bool session_set_state(Session *s, const void *state) {
+    if (!s || !state) return false;
+    if (is_whole(state)) return restore_drive(s, state);
+    run_release(&s->run);
+    s->state = *(const State *)state;
+    s->state.nodes = s->state.rows = s->state.ready = s->prepared = 0;
+    return true;
 }
 
 bool session_free_state(Session *s, void **state) {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,11 @@ import pytest
 from fmi_host import Host, Slave
 from pldf.function import DrivingFunction
 from pldf.instance import ModelError
+from pldf.roads import packed_route
 
 pytest.importorskip("ziglang", reason="needs the extra: pip install -e .[native]")
 
+from pldf.native.prepared import write_prepared_route
 
 OK, WARNING, ERROR = 0, 1, 3
 
@@ -80,3 +83,71 @@ def test_parameters_are_refused_as_by_the_python_model(
     said, told = refusal.split(": ", 1), "".join(slave.texts()).split(": ", 1)
     assert said[1:] == told[1:]  # before it stands the value, in other digits
     assert said[0].split(" = ")[0] == told[0].split(" = ")[0]
+
+
+# Restoring
+
+
+def test_a_refused_state_changes_nothing(host: Host, slave: Slave, tmp_path: Path) -> None:
+    """Its route became shorter meanwhile; once it is as before, the state is restored."""
+    path = tmp_path / "road.prepared"
+    route = packed_route(0)
+    write_prepared_route(route, path)
+    other, twin = host.instantiate().start(route_file=str(path)), host.instantiate().start()
+    drive(other, 0, 30)
+    state, following = other.state(), drive(other, 30, 30)
+    drive(slave.start(), 0, 50)
+    drive(twin, 0, 50)
+    half = {name: column[: len(column) // 2] for name, column in route.knots.items()}
+    write_prepared_route(replace(route, **half), path)
+    assert slave.restore(state) == ERROR
+    assert "route of this state has changed" in slave.texts()[-1]
+    assert slave.state() == twin.state()
+    assert drive(slave, 50, 50) == drive(twin, 50, 50)
+    path.unlink()
+    assert slave.restore(state) == ERROR
+    assert slave.state() == twin.state()
+    write_prepared_route(route, path)
+    assert slave.restore(state) == OK
+    assert drive(slave, 30, 30) == following
+    other.free()
+    twin.free()
+
+
+def test_a_restored_drive_learns_in_its_own_store(host: Host, slave: Slave, tmp_path: Path) -> None:
+    """Not in the one for which outputs were computed before."""
+    first, second = tmp_path / "first", tmp_path / "second"
+    other = host.instantiate().start(learn=1, profile_store=str(second))
+    drive(other, 0, 10)
+    state = other.state()
+    slave.set(learn=1, profile_store=str(first))
+    slave.fmu.setupExperiment(startTime=0.0)
+    slave.fmu.enterInitializationMode()
+    slave.get("target_speed_mps")
+    slave.set(profile_store=str(second))
+    assert slave.restore(state) == OK
+    drive(slave, 10, 30)
+    assert terminated(slave) == OK
+    assert not first.exists()
+    assert len(list(second.glob("*.pldf"))) == 1
+    other.free()
+
+
+def test_a_state_from_before_a_drive_brings_its_own_store(
+    host: Host, slave: Slave, tmp_path: Path
+) -> None:
+    first, second = tmp_path / "first", tmp_path / "second"
+    other = host.instantiate()
+    other.set(learn=1, profile_store=str(second))
+    before = other.state()
+    other.start()
+    drive(other, 0, 10)
+    driving = other.state()
+    drive(slave.start(learn=1, profile_store=str(first)), 0, 5)
+    assert slave.restore(before) == OK
+    assert slave.restore(driving) == OK
+    drive(slave, 10, 30)
+    assert terminated(slave) == OK
+    assert not first.exists()
+    assert len(list(second.glob("*.pldf"))) == 1
+    other.free()

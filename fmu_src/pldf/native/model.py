@@ -51,7 +51,7 @@ class NativeModel:
         events: named tuple of arrays per line of a script, None without scripts.
         events_if: field and value that ask for a script.
         watch: what the user is told about while driving.
-        bounds: pairs of Real parameters; the first one, a bound, must not be weaker than the second.
+        bounds: pairs of Real parameters; the first, a bound, must not be weaker than the second.
     """
 
     name: str

@@ -19,7 +19,6 @@ _KINDS: Final = {
     "Boolean": "KIND_BOOLEAN",
     "String": "KIND_STRING",
 }
-_CAUSALITIES: Final = {"input": "INPUT", "output": "OUTPUT"}
 # Field of the C struct, field of the record; for models that learn.
 _LEARNING_CELLS: Final = {
     "driver_id": "driver_id",
@@ -70,8 +69,7 @@ def _variable(signal: Signal, model: NativeModel) -> Iterator[str]:
     record = model.texts if signal.kind == "String" else model.record
     yield _text(signal.name)
     yield _KINDS[signal.kind]
-    fixed = "PARAMETER" if signal.tunable else "FIXED_PARAMETER"
-    yield _CAUSALITIES.get(signal.causality, fixed)
+    yield signal.causality.upper()
     yield str([f.name for f in fields(record)].index(signal.field))
     low, high = (0.0, 1.0) if signal.kind == "Boolean" else bounds(signal)
     yield _number(low)
