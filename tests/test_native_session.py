@@ -98,7 +98,9 @@ def test_a_refused_state_changes_nothing(host: Host, slave: Slave, tmp_path: Pat
     state, following = other.state(), drive(other, 30, 30)
     drive(slave.start(), 0, 50)
     drive(twin, 0, 50)
-    half = {name: column[: len(column) // 2] for name, column in route.knots.items()}
+    half: dict[str, Any] = {
+        name: column[: len(column) // 2] for name, column in route.knots.items()
+    }
     write_prepared_route(replace(route, **half), path)
     assert slave.restore(state) == ERROR
     assert "route of this state has changed" in slave.texts()[-1]

@@ -40,7 +40,7 @@ class Session:
         self.signals = signals_of(self.model.record) + signals_of(self.model.texts)
         self.phase = Phase.INSTANTIATED
         self._time = -inf
-        self._prepared = False  # this model was initialized
+        self._prepared = False  # this model was initialized, with these parameters
         self._ready = False  # the outputs belong to the parameters
         self._stale = False  # the outputs do not belong to the inputs
         self._finished = False
@@ -141,13 +141,15 @@ class Session:
         """Restore the model; what it holds besides its state follows from its parameters."""
         model = self.create()
         model.restore(state)
-        if phase is Phase.STEPPING and not (self._prepared and self._has_parameters_of(model)):
+        here = self._prepared and self._has_parameters_of(model)
+        if phase is Phase.STEPPING and not here:
             model.initialize()
             model.restore(state)
             self._prepared = True
             self.model = model
         else:
             self.model.restore(state)
+            self._prepared = here
 
     def _has_parameters_of(self, other: Instance[Any]) -> bool:
         ours = self.model
@@ -166,13 +168,13 @@ class Session:
             self._stale = False
 
     def _write(self, group: Group, values: list[Any], record: Any) -> None:
-        rule = "setting a fixed parameter" if group.fixed else "setting a variable"
+        rule = "setting a fixed parameter" if group.parameters else "setting a variable"
         next_phase(self.phase, rule)
         for name, value in zip(group.fields, values, strict=True):
             setattr(record, name, value)
         self._stale = True
         if group.parameters:
-            self._ready = self.phase is Phase.STEPPING
+            self._ready = self._prepared = False
 
 
 def _carry(signals: tuple[Signal, ...], old: Instance[Any], new: Instance[Any]) -> None:
