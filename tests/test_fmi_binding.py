@@ -114,8 +114,8 @@ def test_access_refuses_references_of_other_types_and_unknown_ones(reference):
 
 def test_access_knows_what_may_be_set():
     access = Access(SIGNALS, frozenset({"Real"}))
-    assert access.writable([0, 2]).fixed
-    assert not access.writable([2]).fixed
+    assert access.writable([0, 2]).parameters
+    assert not access.writable([2]).parameters
     with pytest.raises(ModelError, match="out is an output"):
         access.writable([2, 4])
 

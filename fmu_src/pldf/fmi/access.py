@@ -23,7 +23,6 @@ class Group(NamedTuple):
     read: Callable[[Any], list[Any]]
     outputs: bool  # contains an output
     parameters: bool  # contains a parameter
-    fixed: bool  # contains a parameter that must not change while stepping
 
 
 class Access:
@@ -76,7 +75,6 @@ def _group(signals: Sequence[Signal]) -> Group:
         read=_reader(names),
         outputs=any(s.causality == "output" for s in signals),
         parameters=any(s.causality == "parameter" for s in signals),
-        fixed=any(s.causality == "parameter" and not s.tunable for s in signals),
     )
 
 

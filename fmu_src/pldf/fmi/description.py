@@ -161,7 +161,7 @@ def attributes(signal: Signal, reference: int) -> dict[str, str]:
 
 def _variability(signal: Signal) -> str:
     if signal.causality == "parameter":
-        return "tunable" if signal.tunable else "fixed"
+        return "fixed"
     return "continuous" if signal.kind == "Real" else "discrete"
 
 

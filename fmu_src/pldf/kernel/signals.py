@@ -63,7 +63,6 @@ class Signal:
     low: float | None = None
     high: float | None = None
     enumeration: Enumeration | None = None
-    tunable: bool = False
     held: bool = False
 
 
