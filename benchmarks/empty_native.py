@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import Final
 
 from pldf.native.driving_function import MODEL
-from pldf.native.linking import HEADERS, link
+from pldf.native.linking import HEADERS, link, zig
 from pldf.native.table import header, source
-from pldf.native.targets import TARGETS
 
 from vehicle_models.native import DRIVER, VEHICLE
 
@@ -35,13 +34,12 @@ def build_empty(name: str, guid: str, folder: Path) -> Path:
     (folder / "table.c").write_text(source(model, guid, guid))
     entries = "".join(f"EMPTY(model_{entry})\n" for entry in model.entries)
     (folder / "empty.c").write_text(_HEAD + entries)
-    compiler = [sys.executable, "-m", "ziglang", "cc", "-target", TARGETS[TARGET].linker]
     options = ["-O2", "-fPIC", "-fvisibility=hidden", f"-I{RUNTIME}", "-I.", "-c", "empty.c"]
-    subprocess.run([*compiler, *options, "-o", f"{TARGET}.o"], cwd=folder, check=True)
+    subprocess.run(zig(TARGET, *options, "-o", f"{TARGET}.o"), cwd=folder, check=True)
     return link(folder, RUNTIME, TARGET, name, lambda text: print(text, file=sys.stderr))
 
 
 def build_host(source_file: Path, program: Path) -> None:
     """Compile the C host."""
-    compiler = [sys.executable, "-m", "ziglang", "cc", "-std=gnu11", "-O2", f"-I{HEADERS}"]
-    subprocess.run([*compiler, str(source_file), "-o", str(program), "-ldl"], check=True)
+    options = ["-std=gnu11", "-O2", f"-I{HEADERS}"]
+    subprocess.run(zig(TARGET, *options, source_file, "-o", program, "-ldl"), check=True)

@@ -1,9 +1,10 @@
-"""What the kernel tests share: short roads, a function on them, recordings and a point mass."""
+"""What tests share: roads, a function on them, recordings, a point mass, files of a folder."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,15 @@ STEP_S = 0.01
 
 Array = NDArray[np.float64]
 Span = tuple[float, float]
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    """All files below a folder, by their place in it."""
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
 
 
 def road(

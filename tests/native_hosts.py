@@ -17,6 +17,7 @@ import pytest
 from built_once import once
 from fmpy import read_model_description
 from fmpy.model_description import ModelDescription, ScalarVariable
+from pldf.native.linking import HEADERS, zig
 from pldf.native.targets import TARGETS
 
 import build_fmu
@@ -24,7 +25,6 @@ import build_fmu
 Value = str | int | float
 Process = subprocess.Popen[bytes]
 SOURCES: Final = Path(__file__).parent / "native_host"
-HEADERS: Final = Path(fmpy.__file__).parent / "c-code"
 WARNINGS: Final = ("-Wall", "-Wextra", "-Werror")
 MODELS: Final = tuple(build_fmu.FMUS)
 KINDS: Final = ("Real", "Integer", "Enumeration", "Boolean", "String")  # as in host.h
@@ -226,13 +226,12 @@ def native_archives(factory: pytest.TempPathFactory, platform: str) -> Path:
 
 def compiled_host(platform: Platform, path: Path, main: str = "main", *flags: str) -> None:
     """Compile the C host with the program in ``main`` for a platform."""
-    target = TARGETS[platform.target]
-    libraries = ["-lm"] if target.suffix == ".dll" else ["-lm", "-ldl"]
-    zig = [sys.executable, "-m", "ziglang", "cc", "-target", target.linker]
+    windows = TARGETS[platform.target].suffix == ".dll"
+    libraries = ["-lm"] if windows else ["-lm", "-ldl"]
     # As for FMUs: zig has then compiled its C library.
-    how = ["-std=gnu11", "-O2", "-s", "-fPIC"]
-    command = [*zig, *how, *WARNINGS, f"-I{HEADERS}", *flags, *host_sources(main), "-o", str(path)]
-    subprocess.run([*command, *libraries], check=True)
+    how = ["-std=gnu11", "-O2", "-s", "-fPIC", *WARNINGS, f"-I{HEADERS}", *flags]
+    command = zig(platform.target, *how, *host_sources(main), "-o", path, *libraries)
+    subprocess.run(command, check=True)
 
 
 def host_sources(main: str = "main") -> list[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import re
-import struct
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,9 @@ from fmi_host import Host
 from fmpy import fmi3 as fmi
 from fmpy import simulate_fmu
 
-headers = pytest.importorskip("pldf.native.linking").HEADERS
+symbols = pytest.importorskip(
+    "pldf.native.symbols", reason="needs the extra: pip install -e .[native]"
+)
 NAMES = ("AdaptivePLDF", "LongitudinalVehicle", "ScriptedDriver")
 
 
@@ -322,38 +323,19 @@ def test_a_number_sign_is_no_reference_to_a_variable(slave: Slave3, tmp_path: Pa
 # The library
 
 
-def exported(library: Path) -> set[str]:
-    """Return the names that a 64-bit ELF library exports."""
-    data = library.read_bytes()
-    (table,) = struct.unpack_from("<Q", data, 40)
-    size, count = struct.unpack_from("<HH", data, 58)
-    sections = [struct.unpack_from("<IIQQQQIIQQ", data, table + size * i) for i in range(count)]
-    (symbols,) = [section for section in sections if section[1] == 11]  # SHT_DYNSYM
-    names = sections[symbols[6]][4]
-    found = set()
-    for at in range(symbols[4], symbols[4] + symbols[5], 24):
-        name, _, _, section = struct.unpack_from("<IBBH", data, at)
-        if section:
-            found.add(data[names + name : data.index(0, names + name)].decode())
-    return found
-
-
-def declared() -> list[str]:
-    """Return the functions of both standards."""
-    texts = [(headers / f"fmi{version}Functions.h").read_text() for version in "23"]
-    return [name for text in texts for name in re.findall(r"FMI\d_Export \w+\s+(\w+);", text)]
+def library_of(host: Host3) -> Path:
+    (library,) = host.folder.glob("binaries/x86_64-linux/*.so")
+    return library
 
 
 def test_exports_every_function_of_both_standards_and_nothing_else(host: Host3) -> None:
-    assert len(declared()) == len(set(declared())) == 119
-    (library,) = host.folder.glob("binaries/x86_64-linux/*.so")
-    assert exported(library) == set(declared())
+    assert len(symbols.fmi_functions()) == 119
+    symbols.check_library(library_of(host))
 
 
 def test_no_function_needs_an_instance_to_survive(host: Host3) -> None:
-    (path,) = host.folder.glob("binaries/x86_64-linux/*.so")
-    library = ctypes.CDLL(str(path))
-    for name in declared():
+    library = ctypes.CDLL(str(library_of(host)))
+    for name in symbols.fmi_functions():
         if re.search("Version|Platform|Instantiate|FreeInstance", name) is None:
             assert getattr(library, name)(*[None] * 13) == 3, name
     assert library.fmi3InstantiateCoSimulation(*[None] * 12) == 0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.util import module_from_spec, spec_from_file_location
@@ -17,7 +16,7 @@ pytest.importorskip("lief", reason="needs the extra: pip install -e .[native]")
 import lief
 from pldf.native import linking
 from pldf.native.language import check_language
-from pldf.native.linking import HEADERS, link
+from pldf.native.linking import HEADERS, link, zig
 from pldf.native.symbols import check_library, fmi_functions, needed_by_object
 from pldf.native.targets import TARGETS
 
@@ -81,9 +80,8 @@ def compiled(path: Path, target: str, source: str, *options: str) -> Path:
     """Compile C for a target into ``path``."""
     file = path.with_suffix(".c")
     file.write_text(source)
-    program = [sys.executable, "-m", "ziglang", "cc", "-target", TARGETS[target].linker]
     how = ["-O2", "-s"]  # as for FMUs: zig has then compiled its C library
-    subprocess.run([*program, *how, *options, str(file), "-o", str(path)], check=True)
+    subprocess.run(zig(target, *how, *options, file, "-o", path), check=True)
     return path
 
 

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from laboratory import files
 from pldf import cli
 from pldf.build_version import build_version
 from pldf.instance import ModelError
@@ -39,14 +40,6 @@ route = "road.csv"
 [recordings]
 participants = ["P001", "P002"]
 """
-
-
-def files(folder: Path) -> dict[str, bytes]:
-    return {
-        path.relative_to(folder).as_posix(): path.read_bytes()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file()
-    }
 
 
 def test_all_six_drives_are_those_of_the_python_fmus(

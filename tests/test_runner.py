@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from laboratory import files
 from pldf import cli
 from pldf.build_version import build_version
 from pldf.instance import ModelError
@@ -45,14 +46,6 @@ def write_study(folder: Path, count: int = COUNT) -> Path:
     path = folder / "small.toml"
     path.write_text(TEXT.format(count=count), encoding="utf-8")
     return path
-
-
-def files(out: Path) -> dict[str, bytes]:
-    return {
-        path.relative_to(out).as_posix(): path.read_bytes()
-        for path in sorted(out.rglob("*"))
-        if path.is_file()
-    }
 
 
 @pytest.fixture(scope="module")

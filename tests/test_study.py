@@ -10,6 +10,7 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
+from laboratory import files
 from pldf import cli
 from pldf.roads import fingerprint, packed_route
 from pldf.store import ProfileStore, StoredProfile
@@ -55,11 +56,7 @@ class Study:
 
     def files(self) -> dict[str, bytes]:
         """Return all files by name."""
-        return {
-            str(path.relative_to(self.out)): path.read_bytes()
-            for path in sorted(self.out.rglob("*"))
-            if path.is_file()
-        }
+        return files(self.out)
 
 
 @pytest.fixture(scope="module")

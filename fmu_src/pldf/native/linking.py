@@ -24,6 +24,12 @@ _FAT_MAGIC: Final = 0xCAFEBABE
 _FAT_ALIGNMENT: Final = 14  # as a power of two: pages of macOS on ARM
 
 
+def zig(target: str, *arguments: str | Path) -> list[str]:
+    """Return the command that compiles C for a target of ``TARGETS``."""
+    compiler = [sys.executable, "-m", "ziglang", "cc", "-target", TARGETS[target].linker]
+    return [*compiler, *map(str, arguments)]
+
+
 def link(folder: Path, runtime: Path, target: str, name: str, tell: Callable[[str], None]) -> Path:
     """Link a model with the C runtime; return the library, in a folder of its own.
 
@@ -40,8 +46,7 @@ def link(folder: Path, runtime: Path, target: str, name: str, tell: Callable[[st
     """
     library = Path(target, name + TARGETS[target].suffix)
     (folder / target).mkdir()
-    program = [sys.executable, "-m", "ziglang", "cc", "-target", TARGETS[target].linker, *FLAGS]
-    program += [f"-I{HEADERS}", f"-I{runtime}", "-I.", "-o", str(library)]
+    program = zig(target, *FLAGS, f"-I{HEADERS}", f"-I{runtime}", "-I.", "-o", library)
     if TARGETS[target].suffix == ".so":
         program += ["-fPIC", "-Wl,-z,defs", "-Wl,--build-id=none", "-lm"]
     elif TARGETS[target].suffix == ".dylib":
