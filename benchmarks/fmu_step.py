@@ -48,6 +48,9 @@ def time_fmu(path: Path, inputs: dict[str, float], steps: int = 2000) -> FmuTime
     )
     began = perf_counter()
     slave.instantiate()
+    for variable in description.modelVariables:
+        if variable.name == "apply_learned":  # there is no store: no need to warn of it
+            slave.setBoolean([variable.valueReference], [False])
     if "Real" in calls:
         slave.setupExperiment(startTime=0.0)
     slave.enterInitializationMode()
