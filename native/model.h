@@ -43,10 +43,11 @@ typedef struct {
     /* what the user is told about: cell, its texts, cell of the flag or -1, cell of the time */
     int32_t watch, watch_flag, watch_time;
     const char *const *watch_texts;
+    int32_t watch_count;
     const Bound *bounds; /* none may be weaker than what is used */
     int32_t bound_count;
     /* the profile, for models with learn: cells and columns */
-    int32_t store_text, driver_id, apply_learned, learn_if[2], localization, nodes, intervening;
+    int32_t store_text, driver_id, apply_learned, learn_if[2], localization, first_node, nodes, intervening;
     int32_t interventions, profile_iteration, profile_status;
     int32_t base_column, learned_column, following_column;
 } Model;

@@ -1,4 +1,5 @@
 /* FMU states: one piece of memory; serialized, with a checksum behind it. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -99,7 +100,46 @@ bool session_serialize(Session *s, const void *state, void *bytes, size_t size) 
     return true;
 }
 
-/* Whether these bytes, with a checksum behind them, are a state of this build. */
+static bool within(int64_t value, int64_t low, int64_t high) { return value >= low && value <= high; }
+
+static bool has_sound_size(const State *state) {
+    int64_t room = state->size / 8, size = (int64_t)sizeof *state;
+    if (!is_whole(state)) return state->size == size;
+    return within(state->nodes, 0, room) && within(state->rows, 0, room) && /* nothing overflows */
+           state->size == size + 8 * kept_values(state->nodes, state->rows);
+}
+
+static bool has_sound_head(const State *state) {
+    for (int i = 0; i < MODEL_TEXTS; i++)
+        if (!memchr(state->texts[i], 0, PATH_SIZE)) return false;
+    return within(state->phase, INSTANTIATED, TERMINATED) && within(state->ready, 0, 1) &&
+           within(state->stale, 0, 1) && within(state->told, 0, model.watch_count - 1) &&
+           (isfinite(state->time) || (!is_whole(state) && state->time == -INFINITY));
+}
+
+/* An importer may set a number to any value, so those of inputs and parameters are free. */
+static bool has_sound_values(const State *state) {
+    for (const Variable *v = model.variables; v < model.variables + model.variable_count; v++) {
+        bool counts = v->kind & (KIND_INTEGER | KIND_ENUMERATION) && v->causality == OUTPUT;
+        if (!counts && v->kind != KIND_BOOLEAN) continue;
+        double value = (double)state->record[v->cell].integer;
+        if (!(value >= v->low && value <= v->high)) return false;
+    }
+    return within(state->record[model.watch].integer, 0, model.watch_count - 1);
+}
+
+/* What was recorded lies on the route. */
+static bool has_sound_record(const State *state) {
+    if (!model.learn || !is_whole(state)) return true;
+    const Cell *record = state->record;
+    int64_t first = record[model.first_node].integer, count = record[model.interventions].integer;
+    return within(first, 0, state->nodes) && within(count, 0, state->nodes) &&
+           within(record[model.nodes].integer, 0, state->nodes - first) &&
+           within(record[model.intervening].integer, 0, count > 0);
+}
+
+/* Whether these bytes, with a checksum behind them, are a state of this build. Anybody can write a
+   checksum, so what is used as an index or a size is checked as well. */
 static bool is_state(const uint8_t *bytes, size_t size) {
     State state;
     uint32_t sum;
@@ -107,7 +147,8 @@ static bool is_state(const uint8_t *bytes, size_t size) {
     memcpy(&state, bytes, sizeof state);
     memcpy(&sum, bytes + size, sizeof sum);
     return sum == checksum(bytes, (int64_t)size) && state.size == (int64_t)size &&
-           strncmp(state.guid, model.guid, sizeof state.guid) == 0;
+           strncmp(state.guid, model.guid, sizeof state.guid) == 0 && has_sound_size(&state) &&
+           has_sound_head(&state) && has_sound_values(&state) && has_sound_record(&state);
 }
 
 bool session_deserialize(Session *s, const void *bytes, size_t size, void **state) {

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import ctypes
 import math
+import struct
+import zlib
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,7 @@ import pytest
 from fmi_host import Host, Slave
 from pldf.function import DrivingFunction
 from pldf.instance import ModelError
+from pldf.kernel.state import PldfState
 from pldf.roads import packed_route
 
 pytest.importorskip("ziglang", reason="needs the extra: pip install -e .[native]")
@@ -153,3 +156,65 @@ def test_a_state_from_before_a_drive_brings_its_own_store(
     assert not first.exists()
     assert len(list(second.glob("*.pldf"))) == 1
     other.free()
+
+
+# Serialized states
+
+HEAD = {"size": 40, "nodes": 48, "rows": 56, "phase": 64, "ready": 72, "stale": 80, "told": 88}
+TIME, TEXTS = 96, 104
+CELLS = [field.name for field in fields(PldfState)]
+
+
+def changed(state: bytes, empty: bytes, place: str | int, value: int | float | bytes) -> bytes:
+    """Return a state with another value and a checksum that fits.
+
+    Args:
+        state: to be changed.
+        empty: one from before initialization, it ends with the record.
+        place: in the header or the record by name, or an offset.
+        value: int64, float64 or bytes.
+    """
+    record = len(empty) - 4 - 8 * len(CELLS)
+    if isinstance(place, str):
+        place = HEAD[place] if place in HEAD else record + 8 * CELLS.index(place)
+    if not isinstance(value, bytes):
+        value = struct.pack("<q" if isinstance(value, int) else "<d", value)
+    body = state[:place] + value + state[place + len(value) : -4]
+    return body + struct.pack("<I", zlib.crc32(body))
+
+
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        ("phase", 4), ("phase", -1), ("phase", 10**12), ("phase", 0), ("ready", 2), ("stale", -1),
+        ("told", 4), ("told", -1), ("nodes", -1), ("nodes", 2**60), ("rows", 2**62), ("rows", -1),
+        ("size", 0), (TIME, math.nan), (TEXTS, b"a" * 4096), (TEXTS + 4096, b"a" * 4096),
+        ("input_state", 4), ("input_state", 10**15), ("lever_resume", 2), ("function_active", -1),
+        ("profile_status", 99), ("hmi_reason", -1), ("first_node", -1), ("first_node", 10**9),
+        ("nodes_", 10**9), ("nodes_", -1), ("drive_interventions", 10**9),
+        ("drive_interventions", -1), ("intervening", 1),
+    ],
+)  # fmt: skip
+def test_a_hostile_state_is_refused(slave: Slave, place: str | int, value: Any) -> None:
+    """Its checksum is right, so its values are checked."""
+    empty = slave.state()
+    drive(slave.start(), 0, 30)
+    good = slave.state()
+    where = len(empty) - 4 - 8 * (len(CELLS) - CELLS.index("nodes"))
+    bad = changed(good, empty, where if place == "nodes_" else place, value)
+    assert slave.status("deSerializeFMUstate", bad) == ERROR
+    assert "not a state of this FMU" in slave.texts()[-1]
+    assert slave.state() == good
+    assert changed(good, empty, "phase", 2) == good
+    assert slave.restore(good) == OK
+
+
+def test_states_with_inputs_that_make_no_sense_are_restored(native_folder: Path) -> None:
+    slave = Host(native_folder / "ScriptedDriver.fmu").instantiate()
+    slave.start(mode=2**31 - 1)
+    slave.run(0.0, 3, vehicle__speed_mps=math.nan)
+    state = slave.state()
+    following = slave.run(0.03, 3)
+    assert slave.restore(state) == OK
+    assert slave.run(0.03, 3) == following
+    slave.free()

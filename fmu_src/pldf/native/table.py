@@ -24,6 +24,7 @@ _LEARNING_CELLS: Final = {
     "driver_id": "driver_id",
     "apply_learned": "apply_learned",
     "localization": "localization",
+    "first_node": "first_node",
     "nodes": "nodes",
     "intervening": "intervening",
     "interventions": "drive_interventions",
@@ -105,6 +106,7 @@ def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
     yield "watch_flag", str(cells.index(model.watch.flag) if model.watch.once else -1)
     yield "watch_time", str(0 if model.watch.once else cells.index("time_ns"))
     yield "watch_texts", "watch_texts"
+    yield "watch_count", str(len(model.watch.texts))
     yield "bounds", "bounds" if model.bounds else "NULL"
     yield "bound_count", str(len(model.bounds))
     if "learn" in model.entries:
