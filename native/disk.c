@@ -43,13 +43,23 @@ static bool leaves_room(long long length, char *why) {
 #define fsync _commit
 #define fstat _fstat64
 typedef struct _stat64 Status;
-typedef wchar_t Wide[PATH_SIZE];
+typedef wchar_t Wide[PATH_SIZE + 8];
 static const char SEPARATORS[] = "/\\";
+enum { LONG_PATH = 240 };      /* 248 for folders, 260 for files */
 enum { BUSY_WHILE_OPEN = 1 }; /* a file is refused for the moment in which somebody else has it */
 
-static const wchar_t *wide(const char *path, Wide out) {
-    if (!MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, out, PATH_SIZE)) out[0] = 0;
+static const wchar_t *utf16(const char *text, Wide out) {
+    if (!MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, text, -1, out, PATH_SIZE)) out[0] = 0;
     return out;
+}
+
+/* Windows takes long paths only with a prefix, and then only in their plain form. */
+static const wchar_t *wide(const char *path, Wide out) {
+    Wide given;
+    if (wcslen(utf16(path, given)) < LONG_PATH || given[1] != L':') return utf16(path, out);
+    DWORD length = GetFullPathNameW(given, PATH_SIZE, out + 4, NULL);
+    if (length == 0 || length >= PATH_SIZE) return utf16(path, out);
+    return memcpy(out, L"\\\\?\\", 4 * sizeof *out);
 }
 
 static bool narrow(DWORD length, const wchar_t *found, char *out) {
@@ -104,14 +114,14 @@ static void wait_ms(int ms) { Sleep((DWORD)ms); }
 
 bool disk_absolute(const char *path, char *absolute, char *why) {
     Wide w, full;
-    DWORD length = GetFullPathNameW(wide(path, w), PATH_SIZE, full, NULL);
+    DWORD length = GetFullPathNameW(utf16(path, w), PATH_SIZE, full, NULL);
     if (!narrow(length, full, absolute)) return fail(why, "not a path, in UTF-8 and not too long");
     return leaves_room((long long)strlen(absolute), why);
 }
 
 bool disk_environment(const char *name, char *value) {
     Wide w, found;
-    DWORD length = GetEnvironmentVariableW(wide(name, w), found, PATH_SIZE);
+    DWORD length = GetEnvironmentVariableW(utf16(name, w), found, PATH_SIZE);
     if (!narrow(length, found, value)) value[0] = 0;
     return length > 0;
 }
