@@ -85,14 +85,25 @@ static bool take_end(Cursor *cursor, const uint8_t *start) {
     return take_line_end(cursor);
 }
 
+/* CRC-32 of zlib, eight bytes at a time: tables[k] is what a byte with k more behind it adds. */
 uint32_t checksum(const uint8_t *bytes, int64_t size) {
-    uint32_t table[256], value = 0xFFFFFFFFu;
+    uint32_t tables[8][256], value = 0xFFFFFFFFu;
     for (uint32_t i = 0; i < 256; i++) {
-        table[i] = i;
+        tables[0][i] = i;
         for (int bit = 0; bit < 8; bit++)
-            table[i] = (table[i] >> 1) ^ (table[i] & 1 ? 0xEDB88320u : 0);
+            tables[0][i] = (tables[0][i] >> 1) ^ (tables[0][i] & 1 ? 0xEDB88320u : 0);
     }
-    for (int64_t i = 0; i < size; i++) value = (value >> 8) ^ table[(value ^ bytes[i]) & 0xFF];
+    for (int k = 1; k < 8; k++)
+        for (int i = 0; i < 256; i++)
+            tables[k][i] = (tables[k - 1][i] >> 8) ^ tables[0][tables[k - 1][i] & 0xFF];
+    int64_t at = 0;
+    for (; at + 8 <= size; at += 8) {
+        uint32_t next = 0;
+        for (int k = 0; k < 8; k++)
+            next ^= tables[7 - k][(bytes[at + k] ^ (k < 4 ? value >> 8 * k : 0)) & 0xFF];
+        value = next;
+    }
+    for (; at < size; at++) value = (value >> 8) ^ tables[0][(value ^ bytes[at]) & 0xFF];
     return value ^ 0xFFFFFFFFu;
 }
 
