@@ -17,7 +17,8 @@ FMI(Status) FMI(ExitInitializationMode)(void *c) {
 }
 
 FMI(Status) FMI(Terminate)(void *c) {
-    return answer(session_allows(c, __func__, AT_STEP) && session_terminate(c));
+    if (!session_allows(c, __func__, AT_STEP)) return FMI(Error);
+    return session_terminate(c) == INFO ? FMI(OK) : FMI(Warning); /* the drive itself was good */
 }
 
 FMI(Status) FMI(Reset)(void *c) { return answer(session_reset(c)); }

@@ -61,7 +61,7 @@ fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Rea
     const Session *s = c;
     if (!s || !value || kind != fmi2LastSuccessfulTime)
         return answer(session_unsupported(c, __func__));
-    *value = s->state.time;
+    *value = session_time(s);
     return fmi2OK;
 }
 

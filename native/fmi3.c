@@ -69,7 +69,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Bo
     if (event) *event = false;
     if (terminate) *terminate = false;
     if (early_return) *early_return = false;
-    if (last_time && c) *last_time = ((Session *)c)->state.time;
+    if (last_time && c) *last_time = session_time(c);
     return answer(good);
 }
 

@@ -135,17 +135,24 @@ bool run_prepare(Session *s, State *state, Run *run) {
     return true;
 }
 
-void run_learn(Session *s) {
+Level run_learn(Session *s) {
     char message[MESSAGE_SIZE];
     State *state = &s->state;
     Cell *record = state->record;
-    if (!model.learn || !s->run.block || !learns(state) || record[model.nodes].integer < 2) return;
+    if (!model.learn || !s->run.block || !learns(state) || record[model.nodes].integer < 2)
+        return INFO;
+    if (s->finished) {
+        session_tell(s, WARNING, "this drive had ended before its state was restored; it is not "
+                     "learned a second time");
+        return WARNING;
+    }
     run_call(model.learn, state, &s->run, 0.0);
     Lesson lesson = {s->run.block + model.base_column * state->nodes,
                      s->run.block + model.following_column * state->nodes,
                      record[model.intervening].integer ? "drive, last intervention truncated" : "drive",
                      record[model.interventions].integer};
-    if (!*s->run.folder) return;
+    if (!*s->run.folder) return INFO;
     Level level = store_save(s->run.folder, &s->run.stored, &lesson, message);
     session_tell(s, level, "%s", message);
+    return level;
 }

@@ -226,15 +226,15 @@ bool session_step(Session *s, double time, double step_s) {
     return true;
 }
 
-static void finish(Session *s) {
-    if (!s->finished) run_learn(s);
+static Level finish(Session *s) {
+    Level level = run_learn(s);
     s->finished = true;
+    return level;
 }
 
-bool session_terminate(Session *s) {
+Level session_terminate(Session *s) {
     s->state.phase = TERMINATED;
-    finish(s);
-    return true;
+    return finish(s);
 }
 
 bool session_reset(Session *s) {

@@ -60,7 +60,7 @@ bool session_set_times(Session *s, double start, double stop);
 bool session_enter_initialization(Session *s);
 bool session_exit_initialization(Session *s);
 bool session_step(Session *s, double time, double step_s);
-bool session_terminate(Session *s);
+Level session_terminate(Session *s); /* as run_learn */
 
 /* Check what a get or a set of these kinds was given. */
 bool session_can_get(Session *s, const uint32_t *references, size_t count, const void *values,
@@ -84,5 +84,5 @@ bool session_make_run(Session *s, State *state, Run *run);
 /* What a run needs from the disk, and what it leaves there (run.c) */
 bool run_prepare(Session *s, State *state, Run *run);
 void run_call(Entry *entry, State *state, Run *run, double step_s); /* if the model has it */
-void run_learn(Session *s);
+Level run_learn(Session *s); /* INFO, unless something could not be kept, which was told */
 void run_release(Run *run);

@@ -12,10 +12,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from fmi3_host import Host3, Slave3
 from fmi_host import Host, Slave
 from pldf.function import DrivingFunction
 from pldf.instance import ModelError
 from pldf.kernel.state import PldfState
+from pldf.profile_file import decode
 from pldf.roads import packed_route
 
 pytest.importorskip("ziglang", reason="needs the extra: pip install -e .[native]")
@@ -101,9 +103,7 @@ def test_a_refused_state_changes_nothing(host: Host, slave: Slave, tmp_path: Pat
     state, following = other.state(), drive(other, 30, 30)
     drive(slave.start(), 0, 50)
     drive(twin, 0, 50)
-    half: dict[str, Any] = {
-        name: column[: len(column) // 2] for name, column in route.knots.items()
-    }
+    half: dict[str, Any] = {name: knots[: len(knots) // 2] for name, knots in route.knots.items()}
     write_prepared_route(replace(route, **half), path)
     assert slave.restore(state) == ERROR
     assert "route of this state has changed" in slave.texts()[-1]
@@ -218,3 +218,52 @@ def test_states_with_inputs_that_make_no_sense_are_restored(native_folder: Path)
     assert slave.restore(state) == OK
     assert slave.run(0.03, 3) == following
     slave.free()
+
+
+# The end of a drive
+
+
+def test_terminate_warns_that_the_profile_was_not_saved(slave: Slave, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    drive(slave.start(learn=1, profile_store=str(tmp_path / "file")), 0, 30)
+    assert terminated(slave) == WARNING
+    assert "profile not saved" in slave.texts()[-1]
+    assert terminated(slave) == ERROR
+
+
+def test_terminate_of_fmi3_warns_as_well(native_folder: Path, tmp_path: Path) -> None:
+    slave = Host3(native_folder / "fmi3" / "AdaptivePLDF.fmu").instantiate()
+    (tmp_path / "file").write_text("")
+    drive(slave.start(learn=1, profile_store=str(tmp_path / "file")), 0, 30)
+    terminate = slave.fmu.dll.fmi3Terminate
+    assert terminate(ctypes.c_void_p(slave.fmu.component)) == WARNING
+    slave.free()
+
+
+def test_a_drive_is_learned_once_and_says_so(slave: Slave, tmp_path: Path) -> None:
+    drive(slave.start(learn=1, profile_store=str(tmp_path)), 0, 30)
+    state = slave.state()
+    assert terminated(slave) == OK
+    assert slave.restore(state) == OK
+    drive(slave, 30, 30)
+    assert terminated(slave) == WARNING
+    assert [text for text in slave.texts("logStatusWarning") if "a second time" in text]
+    (path,) = tmp_path.glob("*.pldf")
+    assert len(decode(path.read_bytes(), path.name).iterations) == 1
+
+
+# Time
+
+
+def test_the_time_is_a_number_before_it_is_known(slave: Slave, native_folder: Path) -> None:
+    last = ctypes.c_double(-1.0)
+    get = slave.fmu.dll.fmi2GetRealStatus
+    assert get(ctypes.c_void_p(slave.fmu.component), 2, ctypes.byref(last)) == OK
+    assert last.value == 0.0
+    new = Slave3(Host3(native_folder / "fmi3" / "AdaptivePLDF.fmu"), "one", None)
+    last.value = -1.0
+    step, c = new.fmu.dll.fmi3DoStep, ctypes.c_void_p(new.fmu.component)
+    times = ctypes.c_double(0.0), ctypes.c_double(0.1)
+    assert step(c, *times, True, None, None, None, ctypes.byref(last)) == ERROR
+    assert last.value == 0.0
+    new.free()

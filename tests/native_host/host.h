@@ -17,7 +17,7 @@
         }                                                                                         \
     } while (0)
 
-enum { OK = 0, ERROR = 3 }; /* as in both versions of FMI */
+enum { OK = 0, WARNING = 1, ERROR = 3 }; /* as in both versions of FMI */
 enum { MANY = 128, LINE_SIZE = 4096, UNKNOWN = 4000000000u };
 typedef enum { REAL, INTEGER, ENUMERATION, BOOLEAN, TEXT } Kind;
 

@@ -61,7 +61,7 @@ static void parameters(const Fmu *fmu, int rounds) {
             drive(fmu, c, 20);
             driven++;
             CHECK(fmu->api->get_state(fmu, c, &state) == OK);
-            CHECK(fmu->api->terminate(fmu, c) == OK);
+            CHECK(fmu->api->terminate(fmu, c) <= WARNING); /* a store may be out of reach */
             if (dice(2)) CHECK(fmu->api->set_state(fmu, c, state) == OK);
         }
         CHECK(fmu->api->reset(fmu, c) == OK);
@@ -92,7 +92,7 @@ void attempt(const Fmu *fmu) {
             fmu->api->step(fmu, c, k, 1.0);
             get_outputs(fmu, c, out);
         }
-        CHECK(fmu->api->terminate(fmu, c) == OK);
+        CHECK(fmu->api->terminate(fmu, c) <= WARNING);
     }
     fmu->api->free(fmu, c);
 }
