@@ -29,7 +29,7 @@ typedef struct { /* value references of two Real parameters */
 } Bound;
 
 typedef struct {
-    const char *guid, *token, *name; /* of FMI 2.0, of FMI 3.0, of the model */
+    const char *guid, *token; /* of FMI 2.0, of FMI 3.0 */
     const Variable *variables;
     int32_t variable_count;
     const Cell *defaults;

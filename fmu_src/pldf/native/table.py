@@ -84,7 +84,6 @@ def _references(names: tuple[str, ...], model: NativeModel) -> Iterator[str]:
 
 def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
     texts = [f.name for f in fields(model.texts)]
-    yield "name", _text(model.name)
     yield "variables", "variables"
     yield "variable_count", str(len(signals(model)))
     yield "defaults", "defaults"
