@@ -31,7 +31,7 @@ void replay(const Fmu *fmu, const char *script, char **results, int count) {
     }
     fclose(from);
     for (int i = 0; i < count; i++) {
-        CHECK(fmu->api->terminate(fmu, instances[i]) == OK);
+        CHECK(fmu->api->terminate(fmu, instances[i]) <= WARNING); /* kept beside another drive's */
         fmu->api->free(fmu, instances[i]);
         CHECK(fclose(to[i]) == 0);
     }
