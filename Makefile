@@ -17,7 +17,7 @@ endif
 
 READY := .venv/.ready
 BUILT := dist/.built
-FMU_SOURCES := $(shell find fmu_src vehicle_models build_fmu.py LICENSE -type f \
+FMU_SOURCES := $(shell find fmu_src vehicle_models LICENSE -type f \
 	-not -path '*/__pycache__/*' -not -path '*.egg-info/*')
 
 .PHONY: help study test lint format bench build native setup clean
@@ -49,12 +49,12 @@ bench: $(BUILT)
 build: $(BUILT)
 
 native: $(READY)
-	$(BIN)/python build_fmu.py --native --out dist
+	$(BIN)/pldf build --native --out dist
 
 setup: $(READY)
 
 $(BUILT): $(READY) $(FMU_SOURCES)
-	$(BIN)/python build_fmu.py --out dist
+	$(BIN)/pldf build --out dist
 	@touch $@
 
 # pip learned --group in 25.1; the stamp is written last, so an interrupted set-up is repeated.

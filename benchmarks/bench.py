@@ -25,8 +25,8 @@ from empty_fmu import build_empty_fmu
 from fmpy import read_model_description  # type: ignore[import-untyped]
 from fmu_step import time_fmu
 from kernel_times import STUDY_KM, peak_memory_mb, plan_and_learn, step_times, toppra_s
+from pldf.cosim.which_fmus import up_to_date
 from pldf.kernel.state import PldfState
-from pldf.study.which_fmus import up_to_date
 
 from vehicle_models.driver_state import DriverState
 from vehicle_models.vehicle_state import VehicleState
@@ -48,7 +48,7 @@ def main() -> int:
     options = parser.parse_args()
     missing = [name for name in RECORDS if not (options.dist / f"{name}.fmu").is_file()]
     if missing:
-        print(f"{options.dist} lacks {missing}; build with: python build_fmu.py", file=sys.stderr)
+        print(f"{options.dist} lacks {missing}; build with: pldf build", file=sys.stderr)
         return 1
     result = {
         "machine": {"python": platform.python_version(), "processor": platform.machine()},
@@ -106,7 +106,7 @@ def _native(dist: Path) -> dict[str, Any] | None:
 
 def _native_problem(folder: Path) -> str:
     """Return what is in the way of measuring the native FMUs in ``folder``; empty if nothing."""
-    rebuild = "build with: python build_fmu.py --native"
+    rebuild = "build with: pldf build --native"
     if sys.platform != "linux":
         return "the C host runs on Linux only"
     for path in (folder / f"{name}.fmu" for name in RECORDS):

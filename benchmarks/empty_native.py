@@ -7,14 +7,14 @@ import sys
 from pathlib import Path
 from typing import Final
 
-from pldf.native.driving_function import MODEL
-from pldf.native.linking import HEADERS, link, zig
-from pldf.native.table import header, source
+from pldf.build.fmus import RUNTIME
+from pldf.build.native.driving_function import MODEL
+from pldf.build.native.linking import HEADERS, link, zig
+from pldf.build.native.table import header, source
 
 from vehicle_models.native import DRIVER, VEHICLE
 
 MODELS: Final = {model.name: model for model in (MODEL, VEHICLE, DRIVER)}
-RUNTIME: Final = Path(__file__).parents[1] / "native"
 TARGET: Final = "x86_64-linux"
 _HEAD: Final = """#include "model.h"
 #define EMPTY(NAME) \\

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Final, NamedTuple
 
+from pldf.cosim.fmu import Fmu, Place, Slave
+from pldf.cosim.master import STEP_S, Values, connections, unpacked
 from pldf.roads import packed_route
-from pldf.study.fmu import Fmu, Place, Slave
-from pldf.study.master import STEP_S, Values, connections, unpacked
 from pldf.study.phases import PHASES, Setting, values_of
 
 # Letter of each type in a batch of one type; FMI 2.0 moves enumerations as Integers.
@@ -49,7 +49,7 @@ def study_loads(folder: Path, steps_max: int) -> Iterator[tuple[str, Load]]:
 def _drive(
     fmus: Mapping[str, Fmu], values: Values, length_m: float, steps_max: int
 ) -> dict[str, list[bytes]]:
-    """Couple the FMUs as ``pldf.study.master`` does and keep what each is given before a step."""
+    """Couple the FMUs as ``pldf.cosim.master`` does and keep what each is given before a step."""
     wires = connections(fmus)
     slaves = {p: Slave(fmu, p, [s.name for s in fmu.named("input")]) for p, fmu in fmus.items()}
     links = [(slaves[a].outputs[x], slaves[b].inputs[y]) for (a, x), (b, y) in wires]

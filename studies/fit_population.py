@@ -21,7 +21,7 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from pldf.disk import replace_file
+from pldf.files.disk import replace_file
 from pldf.study.participants import StudySettings
 from pldf.study.phases import PHASES, choose_route
 from pldf.study.population import KMH, Distribution, Lognormal, Normal, sample_participants

@@ -19,12 +19,12 @@ from typing import Any, Final
 
 import numpy as np
 from matplotlib.figure import Figure
-from pldf.study.figures import BLUE, GREEN, ORANGE, VERMILLION
+from pldf.analysis.statistics import mean_interval
+from pldf.report.figures import BLUE, GREEN, ORANGE, VERMILLION
 from pldf.study.participants import Participant, Row, StudySettings
 from pldf.study.phases import PHASES, choose_route
 from pldf.study.population import read_distribution, sample_participants
 from pldf.study.runner import in_processes
-from pldf.study.statistics import mean_interval
 from pldf.study.unit import Job
 
 Summary = dict[str, float]

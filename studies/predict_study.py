@@ -20,12 +20,12 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
+from pldf.analysis.published import DRIVERS, TESTS, published_means
+from pldf.analysis.statistics import Comparison, compare
 from pldf.study.participants import Participant, StudySettings
 from pldf.study.phases import PHASES, choose_route
 from pldf.study.population import Distribution, read_distribution, sample_participants
-from pldf.study.published import DRIVERS, TESTS, published_means
 from pldf.study.runner import in_processes
-from pldf.study.statistics import Comparison, compare
 from pldf.study.unit import Job
 
 Floats = NDArray[np.float64]

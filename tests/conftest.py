@@ -9,12 +9,11 @@ import pytest
 from built_once import once
 from fmi_host import Host, Slave
 from native_hosts import Hosts, native_archives
-from pldf.fmi.packing.builder import build
-from pldf.study.fmu import Fmu
-from pldf.study.master import unpacked
+from pldf import cli
+from pldf.build.builder import build
+from pldf.cosim.fmu import Fmu
+from pldf.cosim.master import unpacked
 from pushed_cart import cart_recipe
-
-import build_fmu
 
 
 @pytest.fixture(scope="session")
@@ -22,7 +21,7 @@ def fmu_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with the three FMUs, validated by fmpy, and the study's SSP packages."""
 
     def build(folder: Path) -> None:
-        assert build_fmu.main(["--out", str(folder)]) == 0
+        assert cli.main(["build", "--out", str(folder)]) == 0
 
     return once(tmp_path_factory, "dist", build)
 

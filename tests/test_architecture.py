@@ -45,7 +45,7 @@ def test_the_import_contracts_hold() -> None:
         ("fmu_src/pldf/kernel/drive.py", "import time", "Kernels know no FMI"),
         ("fmu_src/pldf/kernel/planner.py", "from . import learning", "Within the kernel"),
         ("fmu_src/pldf/fmi/access.py", "from ..kernel import codes", "The FMI binding"),
-        ("fmu_src/pldf/store.py", "from .study import master", "What is packed"),
+        ("fmu_src/pldf/profiles/store.py", "from ..cosim import master", "What is packed"),
         ("fmu_src/pldf/roads/route.py", "from ..function import Files", "flow one way"),
         ("vehicle_models/driver.py", "from pldf.function import Files", "by its signals only"),
     ],

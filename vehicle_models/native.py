@@ -1,14 +1,14 @@
-"""Entry points of vehicle and driver for the native build (see ``pldf.native.model``)."""
+"""Entry points of vehicle and driver for the native build (see ``pldf.build.native.model``)."""
 
 from __future__ import annotations
 
 from typing import Any, Final
 
+from pldf.build.native.model import NativeModel, Watch
+from pldf.build.native.pointers import columns, record_at
+from pldf.cosim.prepared import SUFFIX, prepared_script
 from pldf.kernel import planner
 from pldf.kernel.arrays import RouteArrays, Work
-from pldf.native.model import NativeModel, Watch
-from pldf.native.pointers import columns, record_at
-from pldf.native.prepared import SUFFIX, prepared_script
 
 from . import driver_kernel, pedal_kernel, script_kernel, vehicle_kernel, wish_kernel
 from .driver import INVALID_INPUT as DRIVER_INPUT

@@ -24,15 +24,21 @@ _DECIDING: Final = {
         "roads/data/*",
         "function.py",
         "instance.py",
-        "stored_profile.py",
+        "profiles/stored_profile.py",
     ),
     "vehicle_models": ("*.py", "scripts/*"),
 }
 _CARRYING: Final = frozenset({"native.py", "longitudinal_vehicle.py", "scripted_driver.py"})
-# What makes native FMUs of the kernels, beside the C runtime.
-_MAKING: Final = {"pldf": ("native/*.py",), "vehicle_models": ("native.py",)}
-# The C runtime lies in the repository, not in an installed package.
-_RUNTIME: Final = Path(__file__).resolve().parents[2] / "native"
+# What makes native FMUs of the kernels.
+_MAKING: Final = {
+    "pldf": (
+        "build/native/*.py",
+        "build/runtime/*.[ch]",
+        "cosim/platforms.py",
+        "cosim/prepared.py",
+    ),
+    "vehicle_models": ("native.py",),
+}
 
 
 @cache
@@ -44,16 +50,13 @@ def build_version() -> str:
 
 
 @cache
-def native_making(runtime: Path = _RUNTIME) -> str:
+def native_making() -> str:
     """Return twelve hexadecimal digits of what makes native FMUs of the kernels.
 
     That decides no results, so it is no part of the version; but who changed it expects to drive
-    with FMUs that were made anew. Empty where the C sources, in ``runtime``, are not at hand.
+    with FMUs that were made anew.
     """
-    if not (runtime / "model.h").is_file():
-        return ""
-    sources = {f"native/{path.name}": path for path in runtime.glob("*.[ch]")}
-    return _digest(sources | _sources(_MAKING))
+    return _digest(_sources(_MAKING))
 
 
 def _sources(patterns_of: Mapping[str, Sequence[str]]) -> dict[str, Path]:

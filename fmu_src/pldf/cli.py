@@ -16,6 +16,7 @@ from . import __version__
 from .instance import ModelError
 
 COMMANDS: Final = (
+    "build",
     "route",
     "script",
     "drive",

@@ -26,14 +26,14 @@ from .kernel.learning import learn_drive
 from .kernel.preparation import adopt_learned, start_drive
 from .kernel.signals import signals_of, text_parameter
 from .kernel.state import PldfState
-from .roads import Route, chosen_route, fingerprint, route_arrays
-from .store import (
+from .profiles.store import (
     STORE_VARIABLE,
     Iteration,
     ProfileConflict,
     ProfileStore,
     StoredProfile,
 )
+from .roads import Route, chosen_route, fingerprint, route_arrays
 
 INPUT_TEXT: Final = {
     INPUT_OK: "inputs are valid again",

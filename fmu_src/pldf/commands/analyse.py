@@ -11,11 +11,11 @@ from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
-from ..study.analysis import RATES, Analysis, Source, analyse
-from ..study.analysis_tables import write_tables
+from ..analysis.analysis import RATES, Analysis, Source, analyse
+from ..analysis.analysis_tables import write_tables
+from ..analysis.published import DRIVERS, TESTS, published_means
+from ..analysis.questionnaire import SCALES
 from ..study.phases import choose_route
-from ..study.published import DRIVERS, TESTS, published_means
-from ..study.questionnaire import SCALES
 
 SUMMARY: Final = "Analyse a study, real or simulated: rates, scores, tests, effect sizes, report."
 EXAMPLE: Final = (
@@ -86,16 +86,16 @@ def run(options: argparse.Namespace) -> None:
 
 def _show(analysis: Analysis, source: Source, options: argparse.Namespace) -> None:
     """Write report and figures, as far as they are wanted."""
-    from ..study.report_material import collect  # noqa: PLC0415 - slow to import
+    from ..report.material import collect  # noqa: PLC0415 - slow to import
 
     material = collect(analysis, source, options.driver)
     if options.report:
-        from ..study.report import write_report  # noqa: PLC0415
+        from ..report.page import write_report  # noqa: PLC0415
 
         write_report(options.report, material)
         print(f"Report: {options.report}")
     if options.figures:
-        from ..study.figures_paper import write_figures  # noqa: PLC0415
+        from ..report.figures_paper import write_figures  # noqa: PLC0415
 
         paths = write_figures(material, options.figures, options.format)
         print(f"Figures: {', '.join(path.name for path in paths)} in {options.figures}.")

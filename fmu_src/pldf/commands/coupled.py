@@ -13,10 +13,10 @@ from typing import Final
 from rich.console import Console
 from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeElapsedColumn
 
+from ..cosim.fmu import Fmu, Said, Value
+from ..cosim.master import STEP_S, connections, unpacked
+from ..cosim.which_fmus import KINDS, NATIVE_FOLDER, USUAL_FOLDER, choose_fmus
 from ..instance import ModelError
-from ..study.fmu import Fmu, Said, Value
-from ..study.master import STEP_S, connections, unpacked
-from ..study.which_fmus import KINDS, NATIVE_FOLDER, USUAL_FOLDER, choose_fmus
 from .options import parse_value
 
 _INTEGER_MAX: Final = 2**31 - 1  # of an FMI Integer
@@ -47,7 +47,7 @@ def add_coupling(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--fmus", type=Path, default=USUAL_FOLDER, metavar="FOLDER",
-        help=f"where build_fmu.py put the FMUs, the native ones in its folder {NATIVE_FOLDER} "
+        help=f"where pldf build put the FMUs, the native ones in its folder {NATIVE_FOLDER} "
         f"(default: {USUAL_FOLDER})",
     )  # fmt: skip
     parser.add_argument(

@@ -9,14 +9,14 @@ from typing import Final
 
 import numpy as np
 
+from ..cosim.fmu import Value
+from ..cosim.master import Drive, drive
 from ..instance import ModelError
 from ..kernel.codes import LEARN
+from ..profiles.store import STORE_VARIABLE, ProfileStore
+from ..recordings.recording import write_recording
 from ..roads import fingerprint
-from ..store import STORE_VARIABLE, ProfileStore
-from ..study.fmu import Value
-from ..study.master import Drive, drive
 from ..study.phases import PHASES, SCRIPT, Phase, Setting, choose_route, values_of
-from ..study.recording import write_recording
 from .coupled import (
     NATIVE_IF_GOOD,
     add_coupling,
@@ -135,7 +135,7 @@ def _with_script(
 
 
 def _plot(path: Path, driven: Drive, name: str) -> None:
-    from ..study.figures import figure_of, save  # noqa: PLC0415 - slow to import, not always used
+    from ..report.figures import figure_of, save  # noqa: PLC0415 - slow to import, not always used
 
     rates = driven.outputs
     title = f"{name}: interventions in {100 * rates['rate.combined']:.0f} % of the time"

@@ -6,8 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Final
 
-from ..study.exports import write_mdf4, write_parquet
-from ..study.recording import read_recording
+from ..recordings.exports import write_mdf4, write_parquet
+from ..recordings.recording import read_recording
 
 SUMMARY: Final = "Write a recording as Parquet or ASAM MDF4, with units."
 EXAMPLE: Final = "pldf export out/recordings/B1.csv --parquet b1.parquet --mdf4 b1.mf4"

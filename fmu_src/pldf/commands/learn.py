@@ -7,10 +7,10 @@ import json
 from typing import Any, Final
 
 from ..function import DrivingFunction
+from ..profiles.store import read_profile, write_profile
+from ..recordings.offline import Learned, explain, learn_from
+from ..recordings.recording import read_recording
 from ..roads import open_route
-from ..store import read_profile, write_profile
-from ..study.offline import Learned, explain, learn_from
-from ..study.recording import read_recording
 from .options import add_settings, apply_settings
 
 SUMMARY: Final = "Learn from the recording of a drive (SPAA) and write the next profile."

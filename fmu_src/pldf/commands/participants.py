@@ -18,7 +18,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from ..study.fmu import Fmu
+from ..cosim.fmu import Fmu
 from ..study.results import DRIVES, PARTICIPANTS, Results
 from ..study.runner import in_processes, on_cluster, run_missing
 from ..study.study_file import Study, read_study

@@ -9,10 +9,10 @@ from typing import Final
 
 from ..function import DrivingFunction
 from ..instance import ModelError
-from ..store import read_profile
-from ..study.interventions import rates_of
+from ..profiles.store import read_profile
+from ..recordings.interventions import rates_of
+from ..recordings.recording import Recording, completed, read_recording
 from ..study.phases import choose_route
-from ..study.recording import Recording, completed, read_recording
 
 SUMMARY: Final = "Draw recordings: speed over distance, interventions, pedals."
 EXAMPLE: Final = (
@@ -43,7 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Draw the picture and say where it is."""
-    from ..study.figures import figure_of, save  # noqa: PLC0415 - slow to import, rarely needed
+    from ..report.figures import figure_of, save  # noqa: PLC0415 - slow to import, rarely needed
 
     if len(options.recordings) > _COMPARED_MAX:
         options.wrong_usage(f"at most {_COMPARED_MAX} recordings fit into one picture")

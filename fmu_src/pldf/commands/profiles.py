@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from ..instance import ModelError
-from ..store import (
+from ..profiles.store import (
     STORE_VARIABLE,
     ProfileRefused,
     ProfileStore,
@@ -21,7 +21,7 @@ from ..store import (
     read_profile,
     rollback_profile,
 )
-from ..stored_profile import Floats, Iteration
+from ..profiles.stored_profile import Floats, Iteration
 
 SUMMARY: Final = "Show, export and roll back what was learned for drivers and routes."
 EXAMPLE: Final = """pldf profiles list --store profiles

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
-from ..native.prepared import SUFFIX, write_prepared_route
+from ..cosim.prepared import SUFFIX, write_prepared_route
 from ..roads import fingerprint, open_route, write_route_csv
-from ..study.route_facts import BINDING_MPS, RouteFacts, route_facts
+from ..route_facts import BINDING_MPS, RouteFacts, route_facts
 
 SUMMARY: Final = "Show a route: limits, curves and base profile of an OpenDRIVE or CSV file."
 EXAMPLE: Final = "pldf route study --plot study.png"
@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> None:
         (write_route_csv if as_csv else write_prepared_route)(route, options.export)
         print(f"written      {options.export}")
     if options.plot is not None:
-        from ..study.figures_route import draw_route  # noqa: PLC0415 (0.5 s that few calls need)
+        from ..report.figures_route import draw_route  # noqa: PLC0415 (0.5 s that few calls need)
 
         draw_route(facts, options.plot)
         print(f"drawn        {options.plot}")

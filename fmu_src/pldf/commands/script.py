@@ -17,7 +17,7 @@ from vehicle_models.driver_script import (
 )
 from vehicle_models.script_kernel import AT_POSITION, BRAKE, GAS, RESUME
 
-from ..native.prepared import SUFFIX, write_prepared_script
+from ..cosim.prepared import SUFFIX, write_prepared_script
 
 SUMMARY: Final = "Show a driver script: what is pressed where or when, and for how long."
 EXAMPLE: Final = "pldf script my_drive.csv --export my_drive.prepared"

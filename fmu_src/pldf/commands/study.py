@@ -11,11 +11,12 @@ from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
-from ..store import StoredProfile
-from ..study.interventions import Rates
-from ..study.phases import PHASES, PUBLISHED, Phase, Setting, choose_route
+from ..analysis.published import PUBLISHED
+from ..cosim.which_fmus import USUAL_FOLDER
+from ..profiles.store import StoredProfile
+from ..recordings.interventions import Rates
+from ..study.phases import PHASES, Phase, Setting, choose_route
 from ..study.run import Driven, mean_rates, run_study
-from ..study.which_fmus import USUAL_FOLDER
 from .coupled import (
     NATIVE_IF_GOOD,
     add_coupling,
@@ -105,8 +106,8 @@ def _show(bar: Progress, driven_m: float, phase: Phase) -> None:
 
 
 def _draw(driven: Sequence[Driven], profile: StoredProfile | None, out: Path) -> list[Path]:
-    from ..study import figures_study as figures  # noqa: PLC0415 - slow to import
-    from ..study.figures import save  # noqa: PLC0415
+    from ..report import figures_study as figures  # noqa: PLC0415 - slow to import
+    from ..report.figures import save  # noqa: PLC0415
 
     by_name = {one.phase.name: one for one in driven}
     drawn = {

@@ -8,13 +8,13 @@ from typing import Final
 
 from vehicle_models.driver_state import DriverState
 
+from ..cosim.fmu import Value
+from ..cosim.master import STEP_S
 from ..kernel.signals import Signal, signals_of
+from ..profiles.store import Iteration
+from ..recordings.recording import Recording
 from ..roads import Route
-from ..store import Iteration
-from .fmu import Value
-from .master import STEP_S
 from .phases import Phase
-from .recording import Recording
 
 SEED_MAX: Final = 999_999_999
 _OF_THE_DRIVE: Final = ("kind", "script_id", "route_id", "seed")

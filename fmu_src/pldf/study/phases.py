@@ -6,12 +6,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, NamedTuple
 
+from ..cosim.fmu import Value
+from ..cosim.master import STEP_S, Course, Progress, Values
 from ..kernel.codes import LEARN_FAITHFUL, LEARN_OFF
 from ..roads import Route, open_route, packed_route
-from .fmu import Value
-from .interventions import Rates
-from .master import STEP_S, Course, Progress, Values
-from .route_facts import route_facts
+from ..route_facts import route_facts
 
 # Kinds of ``ScriptedDriver``.
 HANDS_OFF: Final = 0
@@ -49,8 +48,6 @@ PHASES: Final = {
         Phase("B3", apply_learned=True, learn=False, intervenes=False),
     )
 }
-# Means over both drives with interventions and all 43 drivers, from the paper.
-PUBLISHED: Final = {"A": Rates(0.2232, 0.3976, 0.5468), "B": Rates(0.1204, 0.1242, 0.2297)}
 
 
 @dataclass(frozen=True)

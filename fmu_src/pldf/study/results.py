@@ -20,12 +20,11 @@ import numpy as np
 
 from .. import __version__
 from ..compiled import digest
-from ..disk import replace_file
+from ..files.disk import replace_file
 from ..instance import Instance, ModelError
 from ..kernel.signals import signals_of
 from ..roads import fingerprint, route_arrays
-from .drives_table import COLUMNS
-from .participants import Participant
+from .participants import ROW_FIELDS, Participant
 from .participants_file import participants_csv
 from .simulation import COMPILED_MODULES, prepared
 from .study_file import Study
@@ -94,7 +93,7 @@ class Results:
     def merge(self) -> None:
         """Make the tables from all parts and take the parts away."""
         if not self.complete:
-            lines = [",".join(COLUMNS)]
+            lines = [",".join(ROW_FIELDS)]
             for one in self.study.participants:
                 rows = json.loads((self.out / _PARTS / f"{one.id}.json").read_bytes())
                 lines += [",".join(_text(value) for value in row) for row in rows]

@@ -10,15 +10,15 @@ from typing import Final
 
 import numpy as np
 
-from ..disk import replace_file
+from ..cosim.fmu import Fmu
+from ..cosim.master import Drive, drive
+from ..files.disk import replace_file
 from ..instance import ModelError
+from ..profiles.store import ProfileStore, StoredProfile
+from ..recordings.interventions import Rates
+from ..recordings.recording import Recording, write_recording
 from ..roads import fingerprint
-from ..store import ProfileStore, StoredProfile
-from .fmu import Fmu
-from .interventions import Rates
-from .master import Drive, drive
 from .phases import Phase, Setting, values_of
-from .recording import Recording, write_recording
 
 RATES: Final = (
     "drive",

@@ -22,22 +22,22 @@ from vehicle_models.vehicle import LongitudinalVehicle
 from vehicle_models.wish_kernel import WishArrays
 
 from ..compiled import KERNEL_MODULES, Namespace, compile_modules, kernel, pack, unpack
+from ..cosim.fmu import Value
+from ..cosim.master import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS
 from ..function import DrivingFunction, next_iteration
 from ..instance import Instance, ModelError, zeros
 from ..kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from ..kernel.codes import LEARN_FAITHFUL, LEARN_OFF, OFF, STANDBY
 from ..kernel.signals import signals_of
 from ..kernel.state import PldfState
+from ..profiles.store import Iteration, StoredProfile
+from ..recordings.recording import COLUMNS, Recording
 from ..roads import fingerprint, route_arrays
-from ..store import Iteration, StoredProfile
+from ..route_facts import route_facts
 from . import loop
-from .fmu import Value
 from .loop import ARRIVED, STOOD_STILL, Ends, Models, Rows, World
-from .master import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS
 from .participants import DriveResult, Participant, Row, StudySettings, order_of, seed_of
 from .phases import HANDS_OFF, PHASES, PREFERENCE, Phase
-from .recording import COLUMNS, Recording
-from .route_facts import route_facts
 
 FloatArray = NDArray[np.float64]
 Packed = NDArray[np.void]

@@ -8,12 +8,12 @@ from typing import Final
 
 from vehicle_models.vehicle_state import VehicleState
 
+from ..cosim.fmu import Value
+from ..cosim.master import STEP_S
 from ..instance import ModelError
 from ..kernel.signals import Signal, signals_of
 from ..kernel.state import PldfState
 from ..roads import Route
-from .fmu import Value
-from .master import STEP_S
 from .participants import SEED_MAX, Participant, StudySettings
 from .participants_file import read_participants
 from .phases import PHASES, Phase, choose_route

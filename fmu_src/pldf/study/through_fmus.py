@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from ..cosim.fmu import Fmu, Value
+from ..cosim.master import Drive, drive
 from ..instance import ModelError
 from ..kernel.state import PldfState
-from ..store import ProfileStore
-from .fmu import Fmu, Value
-from .master import Drive, drive
+from ..profiles.store import ProfileStore
 from .participants import (
     DRIVER_SIGNALS,
     DriveResult,

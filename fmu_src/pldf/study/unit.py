@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from ..profile_file import encode
-from ..store import ProfileStore
-from .fmu import Fmu
+from ..cosim.fmu import Fmu
+from ..profiles.profile_file import encode
+from ..profiles.store import ProfileStore
+from ..recordings.recording import recording_csv
 from .participants import DriveResult, Participant, Row, StudySettings
-from .recording import recording_csv
 from .simulation import prepared, simulate_participant
 from .through_fmus import drive_participant
 

@@ -1,0 +1,1 @@
+"""The analysis of a study, real or simulated: statistics, questionnaire, tables."""

@@ -1,0 +1,261 @@
+"""The analysis of a study, the same for real and for simulated participants.
+
+Every participant counts with the mean over the drives with interventions per system (A1 and A2, B1
+and B2), as in the paper. Drives without interventions (A3, B3) are reported but not tested.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..function import DrivingFunction
+from ..instance import ModelError
+from ..recordings.interventions import Rates
+from ..recordings.recording import Recording, completed, read_recording
+from ..roads import Route
+from ..study.phases import PHASES, Phase
+from .drives_table import DriveRow, check_complete, check_phase, read_drives, row_of
+from .questionnaire import Questionnaire, read_questionnaire
+from .statistics import Comparison, Interval, compare, mean_interval
+
+Floats = NDArray[np.float64]
+
+SYSTEMS: Final = ("A", "B")
+RATES: Final = Rates._fields
+PARTICIPANTS_MIN: Final = 2
+
+# What a recording must hold for the rates, and what is derived when the route is known.
+_PEDALS_AND_LEVER: Final = ("brake_pedal", "set_speed_offset_mps")
+
+# Called with the number of recordings read and of all.
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """Where a study lies and what of it counts.
+
+    Attributes:
+        folder: with ``drives.csv`` or ``recordings/``, and ``questionnaire.csv`` if there is one.
+        route: the route driven, for recordings that lack columns.
+        without: participants to leave out.
+    """
+
+    folder: Path
+    route: Route | None = None
+    without: frozenset[str] = frozenset()
+
+    @cached_property
+    def study(self) -> Mapping[str, Any]:
+        """The study file that a simulation left in the folder; empty for real participants."""
+        path = self.folder / "study.toml"
+        try:
+            return tomllib.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        except (OSError, ValueError) as error:
+            raise ModelError(f"{path}: {error}") from error
+
+    def order(self) -> list[Phase]:
+        """Return the drives in the order of the study; repeated phases are numbered anew."""
+        drives = self.study.get("drives", {})
+        repeats = drives.get("per_phase", 1)
+        phases = [PHASES[name] for name in drives.get("phases", PHASES) for _ in range(repeats)]
+        if repeats == 1:
+            return phases
+        counts = dict.fromkeys(SYSTEMS, 0)
+        for at, phase in enumerate(phases):
+            system = phase.name[0]
+            counts[system] += 1
+            phases[at] = phase._replace(name=f"{system}{counts[system]}")
+        return phases
+
+    def compared(self) -> dict[str, tuple[str, ...]]:
+        """Return, per system, the drives in which the drivers intervene."""
+        acting = dict.fromkeys(phase.name for phase in self.order() if phase.intervenes)
+        return {s: tuple(name for name in acting if name[0] == s) for s in SYSTEMS}
+
+    def development(self) -> dict[str, str]:
+        """Return each drive learned from -> the next one with the learned profile."""
+        found: dict[str, str] = {}
+        taught = ""
+        for phase in self.order():
+            if phase.apply_learned and taught:
+                found.setdefault(taught, phase.name)
+            taught = phase.name if phase.learn else taught
+        return found
+
+    def recordings(self) -> dict[tuple[str, str], Path]:
+        """Return the recordings by (participant, phase); ModelError for a name that tells neither.
+
+        Participants are in order of their names, drives in the order of the study.
+        """
+        found = {}
+        for path in sorted((self.folder / "recordings").glob("*.csv")):
+            participant, _, phase = path.stem.rpartition("_")
+            if not participant:
+                raise ModelError(
+                    f"{path}: name recordings PARTICIPANT_PHASE.csv, such as P001_A1.csv"
+                )
+            check_phase(str(path), phase)
+            if participant not in self.without:
+                found[participant, phase] = path
+        return found
+
+    def read(self, path: Path) -> Recording:
+        """Read a recording with all columns, or with pedals and lever at least.
+
+        Raises:
+            ModelError: columns are missing and the route is not known.
+        """
+        recording = read_recording(path)
+        missing = [name for name in _PEDALS_AND_LEVER if name not in recording]
+        if self.route is None:
+            if missing:
+                raise ModelError(
+                    f"{path}: no column {', '.join(missing)}; name the route driven with --route "
+                    "to have it derived"
+                )
+            return recording
+        function = DrivingFunction()
+        function.prepare(self.route)
+        return completed(recording, function.route, function.profile)
+
+
+@dataclass(frozen=True, eq=False)
+class Analysis:
+    """What a study says.
+
+    Attributes:
+        drives: one row per drive.
+        participants: in the order in which they appear.
+        compared: system -> its drives with interventions.
+        comparisons: measure (a rate, or a scale of the questionnaire) -> A against B.
+        questionnaire: None if there is none.
+        source: file or folder that the rates come from.
+    """
+
+    drives: Sequence[DriveRow]
+    participants: tuple[str, ...]
+    compared: Mapping[str, tuple[str, ...]]
+    comparisons: Mapping[str, Comparison]
+    questionnaire: Questionnaire | None
+    source: Path
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """The drives with interventions, A before B."""
+        return tuple(phase for phases in self.compared.values() for phase in phases)
+
+    @property
+    def phases(self) -> list[str]:
+        """Phases driven by somebody, in order of system and number."""
+        return sorted({d.phase for d in self.drives}, key=lambda phase: (phase[0], int(phase[1:])))
+
+    def rate(self, phase: str, measure: str) -> Floats:
+        """Return one rate in ``phase`` by participant; NaN for those who did not drive it."""
+        return mean_rates(self.drives, self.participants, measure, (phase,))
+
+    def interval(self, phase: str, measure: str) -> Interval:
+        """Return the mean rate of a phase with its 95 % confidence interval, within 0 and 1."""
+        rates = self.rate(phase, measure)
+        rates = rates[np.isfinite(rates)]
+        mean = float(np.mean(rates))
+        if len(rates) < PARTICIPANTS_MIN:
+            return Interval(mean, mean, mean)
+        interval = mean_interval(rates)
+        return Interval(mean, max(interval.low, 0.0), min(interval.high, 1.0))
+
+    def per_participant(self, measure: str, system: str) -> Floats:
+        """Return what each participant counts with, in the order of ``participants``."""
+        if measure not in RATES:
+            assert self.questionnaire is not None
+            scores = self.questionnaire.scores[measure]
+            return np.array([scores[name, system] for name in self.participants])
+        return mean_rates(self.drives, self.participants, measure, self.compared[system])
+
+
+def mean_rates(
+    drives: Sequence[DriveRow], participants: Sequence[str], measure: str, phases: Collection[str]
+) -> Floats:
+    """Return each participant's mean of one rate over the drives of some phases; NaN if none."""
+    found: dict[str, list[float]] = {name: [] for name in participants}
+    for drive in drives:
+        if drive.phase in phases:
+            found[drive.participant].append(getattr(drive.rates, measure))
+    return np.array([float(np.mean(v)) if v else np.nan for v in found.values()])
+
+
+def analyse(source: Source, progress: Progress = lambda _done, _all: None) -> Analysis:
+    """Analyse the study in ``source.folder``.
+
+    Raises:
+        ModelError: naming file, line, participant and phase of what is missing or unusable.
+    """
+    drives, origin = _drives(source, progress)
+    compared = source.compared()
+    check_complete(drives, [name for names in compared.values() for name in names], str(origin))
+    participants = tuple(dict.fromkeys(drive.participant for drive in drives))
+    if len(participants) < PARTICIPANTS_MIN:
+        raise ModelError(
+            f"{origin}: {len(participants)} participants; comparing systems needs at least "
+            f"{PARTICIPANTS_MIN}"
+        )
+    order = {name: at for at, name in enumerate(participants)}
+    drives.sort(key=lambda drive: order[drive.participant])
+    answers = _questionnaire(source, participants)
+    found = Analysis(tuple(drives), participants, compared, {}, answers, origin)
+    measures = (*RATES, *(answers.scores if answers else ()))
+    if not all(compared.values()):
+        raise ModelError(f"{source.folder}: no drives with both systems, so nothing to compare")
+    comparisons = {
+        name: compare(found.per_participant(name, "A"), found.per_participant(name, "B"))
+        for name in measures
+    }
+    return replace(found, comparisons=comparisons)
+
+
+def _drives(source: Source, progress: Progress) -> tuple[list[DriveRow], Path]:
+    """Return all drives, from the table of drives if there is one, else from the recordings."""
+    table = source.folder / "drives.csv"
+    if table.exists():
+        return read_drives(table, source.without), table
+    recordings = source.recordings()
+    if not recordings:
+        raise ModelError(
+            f"{source.folder}: no drives.csv and no recordings/PARTICIPANT_PHASE.csv to analyse"
+        )
+    drives = []
+    for number, ((participant, phase), path) in enumerate(recordings.items(), start=1):
+        drives.append(row_of(participant, phase, source.read(path), str(path)))
+        progress(number, len(recordings))
+    return drives, source.folder / "recordings"
+
+
+def _questionnaire(source: Source, participants: Collection[str]) -> Questionnaire | None:
+    path = source.folder / "questionnaire.csv"
+    if not path.exists():
+        return None
+    answers = read_questionnaire(path, source.without)
+    for scale, scores in answers.scores.items():
+        for participant in participants:
+            for system in SYSTEMS:
+                if (participant, system) not in scores:
+                    raise ModelError(
+                        f"{path}: participant {participant} has no answers ({scale}) for system "
+                        f"{system}; add them or leave the participant out with "
+                        f"--without {participant}"
+                    )
+        strangers = {participant for participant, _ in scores}.difference(participants)
+        if strangers:
+            raise ModelError(
+                f"{path}: answers of {', '.join(sorted(strangers))}, of whom there are no drives; "
+                "leave them out with --without"
+            )
+    return answers

@@ -1,0 +1,93 @@
+"""The tables of an analysis as CSV: for spreadsheets, R and papers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ..files.disk import replace_file
+from .analysis import RATES, Analysis
+from .statistics import Comparison, compare
+
+Cell = str | int | float
+
+
+def write_tables(analysis: Analysis, folder: Path) -> list[Path]:
+    """Write the tables into ``folder`` and return their paths."""
+    folder.mkdir(parents=True, exist_ok=True)
+    tables = {
+        "participants.csv": _participants(analysis),
+        "phases.csv": _phases(analysis),
+        "tests.csv": _tests(analysis),
+    }
+    if analysis.questionnaire:
+        tables["items.csv"] = _items(analysis)
+    for name, rows in tables.items():
+        lines = (",".join(_text(cell) for cell in row) for row in rows)
+        replace_file(folder / name, ("\n".join(lines) + "\n").encode())
+    return [folder / name for name in tables]
+
+
+def _text(cell: Cell) -> str:
+    return repr(float(cell)) if isinstance(cell, float) else str(cell)
+
+
+def _participants(analysis: Analysis) -> list[Sequence[Cell]]:
+    """One row per participant and system: what entered the tests."""
+    measures = list(analysis.comparisons)
+    names = [f"{name}_rate" if name in RATES else name for name in measures]
+    rows: list[Sequence[Cell]] = [("participant", "system", *names)]
+    values = {
+        system: np.column_stack([analysis.per_participant(name, system) for name in measures])
+        for system in "AB"
+    }
+    for at, participant in enumerate(analysis.participants):
+        rows += [(participant, system, *values[system][at].tolist()) for system in "AB"]
+    return rows
+
+
+def _phases(analysis: Analysis) -> list[Sequence[Cell]]:
+    """One row per phase and rate: mean with its 95 % confidence interval."""
+    rows: list[Sequence[Cell]] = [("phase", "rate", "participants", "mean", "low", "high")]
+    for phase in analysis.phases:
+        for measure in RATES:
+            interval = analysis.interval(phase, measure)
+            count = int(np.isfinite(analysis.rate(phase, measure)).sum())
+            rows.append((phase, measure, count, interval.value, interval.low, interval.high))
+    return rows
+
+
+def _tests(analysis: Analysis) -> list[Sequence[Cell]]:
+    """One row per measure: both tests and the effect sizes."""
+    heading = (
+        "measure", "participants", "mean_a", "mean_b", "difference", "low", "high",
+        "t", "df", "p_t", "w", "pairs", "zeros", "p_wilcoxon", "wilcoxon_method",
+        "p_wilcoxon_normal", "p_wilcoxon_corrected", "cohen_dz", "rank_biserial", "fell",
+    )  # fmt: skip
+    count = len(analysis.participants)
+    return [
+        heading,
+        *((name, count, *_cells(found)) for name, found in analysis.comparisons.items()),
+    ]
+
+
+def _cells(found: Comparison) -> Sequence[Cell]:
+    t, ranks, difference = found.t, found.signed_rank, found.difference
+    return (
+        found.mean_first, found.mean_second, difference.value, difference.low, difference.high,
+        t.t, t.df, t.p, ranks.w, ranks.pairs, ranks.zeros, ranks.p, ranks.method,
+        ranks.p_normal, ranks.p_corrected, found.d_z, found.rank_biserial, found.fell,
+    )  # fmt: skip
+
+
+def _items(analysis: Analysis) -> list[Sequence[Cell]]:
+    """One row per item of the questionnaire, scored; higher is better."""
+    assert analysis.questionnaire is not None
+    rows: list[Sequence[Cell]] = [("item", "mean_a", "mean_b", "w", "pairs", "p_wilcoxon")]
+    for item, answers in analysis.questionnaire.items.items():
+        a, b = ([answers[name, system] for name in analysis.participants] for system in "AB")
+        ranks = (found := compare(a, b)).signed_rank
+        rows.append((item, found.mean_first, found.mean_second, ranks.w, ranks.pairs, ranks.p))
+    return rows

@@ -1,0 +1,102 @@
+"""The model description of an FMI 3.0 FMU: the variables of FMI 2.0, with the same references.
+
+What FMI 3.0 adds is the variable ``time``, behind all others. Every variable is a scalar.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Final
+from xml.etree.ElementTree import Element, SubElement
+
+from ..kernel.signals import Signal
+from ..fmi.description import (
+    NO_GUID,
+    Model,
+    add_defaults,
+    add_items,
+    add_units,
+    attributes,
+    check,
+    enumerations,
+    header,
+    type_attributes,
+)
+
+_CAPABILITIES: Final = {
+    "needsExecutionTool": "false",
+    "canBeInstantiatedOnlyOncePerProcess": "false",
+    "canGetAndSetFMUState": "true",
+    "canSerializeFMUState": "true",
+    "providesDirectionalDerivatives": "false",
+    "providesAdjointDerivatives": "false",
+    "providesPerElementDependencies": "false",
+    "canHandleVariableCommunicationStepSize": "true",
+    "maxOutputDerivativeOrder": "0",
+    "providesIntermediateUpdate": "false",
+    "mightReturnEarlyFromDoStep": "false",
+    "canReturnEarlyAfterIntermediateUpdate": "false",
+    "hasEventMode": "false",
+    "providesEvaluateDiscreteStates": "false",
+}
+_TIME: Final = "time"
+_TYPES: Final = {"Real": "Float64", "Integer": "Int32"}  # the others kept their names
+
+
+def model_description3(model: Model, log_categories: Mapping[str, str]) -> Element:
+    """Return the root element; ValueError if a signal breaks a rule of FMI."""
+    check(model.signals)
+    if _TIME in {signal.name for signal in model.signals}:
+        raise ValueError(f"{_TIME!r} is the name of the independent variable")
+    about = {"fmiVersion": "3.0", "instantiationToken": NO_GUID, **header(model)}
+    root = Element("fmiModelDescription", about)
+    SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **_CAPABILITIES})
+    add_units(root, {"s", *(s.unit for s in model.signals)})
+    _types(root, model.signals)
+    add_defaults(root, model, log_categories)
+    variables = SubElement(root, "ModelVariables")
+    variables.extend(_variable(signal, i) for i, signal in enumerate(model.signals))
+    variables.append(_time(len(model.signals)))
+    structure = SubElement(root, "ModelStructure")
+    structure.extend(_unknowns(model.signals))
+    return root
+
+
+def _types(root: Element, signals: tuple[Signal, ...]) -> None:
+    found = enumerations(signals)
+    if not found:
+        return
+    definitions = SubElement(root, "TypeDefinitions")
+    for name, enumeration in found.items():
+        add_items(SubElement(definitions, "EnumerationType", {"name": name}), enumeration)
+
+
+def _variable(signal: Signal, reference: int) -> Element:
+    said = {**attributes(signal, reference), **type_attributes(signal)}
+    start = said.pop("start", None) if signal.kind == "String" else None
+    variable = Element(_TYPES.get(signal.kind, signal.kind), said)
+    if start is not None:
+        SubElement(variable, "Start", {"value": start})
+    return variable
+
+
+def _time(reference: int) -> Element:
+    said = {
+        "name": _TIME,
+        "valueReference": str(reference),
+        "description": "Simulation time",
+        "causality": "independent",
+        "variability": "continuous",
+        "unit": "s",
+    }
+    return Element("Float64", said)
+
+
+def _unknowns(signals: tuple[Signal, ...]) -> Iterable[Element]:
+    """Yield all outputs, twice; one that is held depends on nothing, or on the parameters."""
+    parameters = [str(i) for i, s in enumerate(signals) if s.causality == "parameter"]
+    for name, dependencies in (("Output", ""), ("InitialUnknown", " ".join(parameters))):
+        for reference, signal in enumerate(signals):
+            if signal.causality == "output":
+                held = {"dependencies": dependencies} if signal.held else {}
+                yield Element(name, {"valueReference": str(reference), **held})

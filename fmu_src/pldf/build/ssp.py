@@ -1,0 +1,204 @@
+"""SSP 1.0 packages of our FMUs, kept to what all importers that we know can load.
+
+- Flat: components and connections, no nested systems, transformations or dictionaries.
+- An input that nothing feeds is no connector (importers wire it to something, or fail).
+- No enumerations: libcosim drops such variables and aborts where a package names one, ecos refuses
+  to load it. No strings: fmpy's importer cannot set them.
+- The top system says how OMSimulator shall step; without that it does not simulate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from .. import __version__
+from ..kernel.signals import Signal
+from ..fmi.description import bounds, literal
+from ..fmi.units import base_unit
+
+STRUCTURE: Final = "SystemStructure.ssd"
+RESOURCES: Final = "resources"
+PARAMETER_SET: Final = "initialValues"  # the name under which importers look for start values
+FMU_TYPE: Final = "application/x-fmu-sharedlibrary"
+_SSP: Final = "http://ssp-standard.org/SSP1/SystemStructure"
+_OMS: Final = "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd"
+
+# (component, variable) of an output and of the input that it feeds
+Connection = tuple[tuple[str, str], tuple[str, str]]
+
+
+@dataclass(frozen=True)
+class Component:
+    """One FMU of a system.
+
+    Attributes:
+        name: plain identifier.
+        fmu: file name of the FMU in ``resources/``.
+        signals: variables of the FMU by name.
+    """
+
+    name: str
+    fmu: str
+    signals: Mapping[str, Signal]
+
+
+@dataclass(frozen=True)
+class System:
+    """Components, what feeds what, and the default experiment.
+
+    Attributes:
+        name: plain identifier.
+        about: one sentence.
+        components: in the order in which they are written.
+        connections: output first.
+        stop_time_s: end of the default experiment.
+        step_s: communication step.
+    """
+
+    name: str
+    about: str
+    components: Sequence[Component]
+    connections: Sequence[Connection]
+    stop_time_s: float
+    step_s: float
+
+
+def structure(system: System) -> bytes:
+    """Return the system structure description; ValueError if a connection cannot be written."""
+    attributes = {
+        "xmlns:ssd": f"{_SSP}Description",
+        "xmlns:ssc": f"{_SSP}Common",
+        "xmlns:oms": _OMS,
+        "version": "1.0",
+        "name": system.name,
+        "description": system.about,
+        "generationTool": f"Adaptive PLDF {__version__}",
+    }
+    root = Element("ssd:SystemStructureDescription", attributes)
+    top = SubElement(root, "ssd:System", {"name": "root"})
+    elements = SubElement(top, "ssd:Elements")
+    carried = {one.name: _connectors(one, system.connections) for one in system.components}
+    for component in system.components:
+        _component(elements, component, carried[component.name])
+    connections = SubElement(top, "ssd:Connections")
+    for source, target in system.connections:
+        ends = dict(zip(("startElement", "startConnector"), source, strict=True))
+        ends |= dict(zip(("endElement", "endConnector"), target, strict=True))
+        SubElement(connections, "ssd:Connection", ends)
+    _master(top, system.step_s)
+    signals = [signal for found in carried.values() for signal in found]
+    _units(root, "ssd:Units", signals)
+    times = {"startTime": "0", "stopTime": f"{system.stop_time_s:g}"}
+    SubElement(root, "ssd:DefaultExperiment", times)
+    return _text(root)
+
+
+def parameter_set(signals: Mapping[str, Signal], values: Mapping[str, float | str]) -> bytes:
+    """Return a parameter set (.ssv) with start values of one component.
+
+    Args:
+        signals: variables of the component by name.
+        values: start values by name, Booleans as 0 and 1.
+
+    Raises:
+        ValueError: one of them is out of its range, or not every importer could set it.
+    """
+    attributes = {
+        "xmlns:ssv": f"{_SSP}ParameterValues",
+        "xmlns:ssc": f"{_SSP}Common",
+        "version": "1.0",
+        "name": PARAMETER_SET,
+    }
+    root = Element("ssv:ParameterSet", attributes)
+    parameters = SubElement(root, "ssv:Parameters")
+    for name, value in values.items():
+        signal = signals[name]
+        _require_portable(signal)
+        _require_allowed(signal, value)
+        parameter = SubElement(parameters, "ssv:Parameter", {"name": name})
+        unit = {"unit": signal.unit} if signal.unit else {}
+        SubElement(parameter, f"ssv:{signal.kind}", {"value": literal(signal, value), **unit})
+    _units(root, "ssv:Units", [signals[name] for name in values])
+    return _text(root)
+
+
+def parameter_file(component: str) -> str:
+    """Return where the parameter set of a component lies in the package."""
+    return f"{RESOURCES}/{component}.ssv"
+
+
+def _connectors(component: Component, connections: Sequence[Connection]) -> list[Signal]:
+    """Return the inputs that are fed and all outputs that every importer can carry."""
+    ends = {name for ends in connections for part, name in ends if part == component.name}
+    for name in ends:
+        _require_portable(component.signals[name])
+    return [
+        signal
+        for signal in component.signals.values()
+        if (signal.causality == "output" and _portable(signal)) or signal.name in ends
+    ]
+
+
+def _portable(signal: Signal) -> bool:
+    return signal.kind in ("Real", "Integer", "Boolean")
+
+
+def _require_portable(signal: Signal) -> None:
+    if not _portable(signal):
+        raise ValueError(f"{signal.name}: not every SSP importer can handle type {signal.kind}")
+
+
+def _require_allowed(signal: Signal, value: float | str) -> None:
+    low, high = (0.0, 1.0) if signal.kind == "Boolean" else bounds(signal)
+    if isinstance(value, str) or not low <= value <= high:
+        raise ValueError(f"{signal.name} = {value!r} is not in {low:g} .. {high:g}")
+    if signal.causality not in ("parameter", "input"):
+        raise ValueError(f"{signal.name} is an output, it has no start value")
+
+
+def _component(elements: Element, component: Component, connectors: Iterable[Signal]) -> None:
+    attributes = {
+        "name": component.name,
+        "type": FMU_TYPE,
+        "source": f"{RESOURCES}/{component.fmu}",
+        "implementation": "CoSimulation",
+    }
+    element = SubElement(elements, "ssd:Component", attributes)
+    listed = SubElement(element, "ssd:Connectors")
+    for signal in connectors:
+        kind = {"name": signal.name, "kind": signal.causality}
+        unit = {"unit": signal.unit} if signal.unit else {}
+        SubElement(SubElement(listed, "ssd:Connector", kind), f"ssc:{signal.kind}", unit)
+    bindings = SubElement(element, "ssd:ParameterBindings")
+    SubElement(bindings, "ssd:ParameterBinding", {"source": parameter_file(component.name)})
+
+
+def _master(top: Element, step_s: float) -> None:
+    annotations = SubElement(top, "ssd:Annotations")
+    annotation = SubElement(annotations, "ssc:Annotation", {"type": "org.openmodelica"})
+    information = SubElement(SubElement(annotation, "oms:Annotations"), "oms:SimulationInformation")
+    # oms-ma: all components step with the values of the last communication point.
+    steps = {"description": "oms-ma", "stepSize": f"{step_s:g}"}
+    tolerances = {"absoluteTolerance": "0.0001", "relativeTolerance": "0.0001"}
+    SubElement(information, "oms:FixedStepMaster", {**steps, **tolerances})
+
+
+def _units(root: Element, tag: str, signals: Iterable[Signal]) -> None:
+    names = sorted({signal.unit for signal in signals if signal.unit})
+    if not names:
+        return
+    units = SubElement(root, tag)
+    for name in names:
+        base = base_unit(name)
+        powers = {symbol: str(power) for symbol, power in base.exponents.items()}
+        factor = {"factor": f"{base.factor:.16g}"} if base.factor != 1.0 else {}
+        SubElement(SubElement(units, "ssc:Unit", {"name": name}), "ssc:BaseUnit", powers | factor)
+
+
+def _text(root: Element) -> bytes:
+    indent(root)
+    text = tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()

@@ -1,0 +1,100 @@
+"""``pldf build``: the FMUs, and the study's SSP packages of them."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from time import perf_counter
+from typing import Final
+
+from ..cosim.platforms import PLATFORMS
+from ..instance import ModelError
+
+SUMMARY: Final = "Build the FMUs and the study's SSP packages, of Python source or native."
+EXAMPLE: Final = (
+    "pldf build\n"
+    "      all FMUs and packages of Python source, into dist\n"
+    "  pldf build --native\n"
+    "      all FMUs for all platforms, into dist/native: the first time takes minutes, later "
+    "seconds\n"
+    "  pldf build --native --target linux64 --only AdaptivePLDF\n"
+    "      the quick way to see whether a changed kernel still compiles"
+)
+MODELS: Final = ("AdaptivePLDF", "LongitudinalVehicle", "ScriptedDriver")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``pldf build``."""
+    parser.add_argument("--only", choices=MODELS, help="build this FMU alone, no packages")
+    parser.add_argument(
+        "--out", type=Path, default=Path("dist"), metavar="FOLDER", help="default: dist"
+    )
+    parser.add_argument(
+        "--native",
+        action="store_true",
+        help="FMUs without Python instead: FMI 2.0 into OUT/native, FMI 3.0 into OUT/native/fmi3",
+    )
+    parser.add_argument(
+        "--target",
+        action="append",
+        default=[],
+        choices=tuple(PLATFORMS),
+        help="with --native: build for this platform alone (repeatable; default: all; darwin64 is "
+        "macOS on both processors; aarch64-linux is in FMI 3.0 archives only)",
+    )
+    parser.add_argument(
+        "--ssp-sources",
+        type=Path,
+        metavar="FOLDER",
+        help="also write what the packages say as readable files (ssp/ in the repository)",
+    )
+    parser.set_defaults(refuse=parser.error)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Build and validate; ends with ModelError unless every FMU and package is valid."""
+    if options.target and not options.native:
+        options.refuse("--target goes with --native")
+    from ..build import fmus  # noqa: PLC0415 - brings pythonfmu and fmpy
+
+    made: list[Path] = []
+    names = [options.only] if options.only else list(fmus.FMUS)
+    for number, name in enumerate(names, start=1):
+        progress = Progress(f"[{number}/{len(names)}] {name}")
+        try:
+            if options.native:
+                paths = fmus.build_native(name, options.out, options.target, progress)
+            else:
+                paths = fmus.build_python(name, options.out, progress)
+        except ValueError as problem:
+            progress.end("failed")
+            raise ModelError(f"{name}: {problem}") from None
+        progress.end()
+        for path in paths:
+            print(f"    {path} ({path.stat().st_size / 1024:.0f} KiB)")
+        made += paths
+    if not options.only:
+        folder = options.out / fmus.NATIVE_FOLDER if options.native else options.out
+        written = fmus.build_packages(folder, made, options.ssp_sources)
+        if written:
+            print(f"{folder}: {', '.join(path.name for path in written)} (valid)")
+
+
+class Progress:
+    """Says what is being done and how long it took: a line for each piece of work."""
+
+    def __init__(self, label: str) -> None:
+        self._label = label
+        self._since: float | None = None
+
+    def __call__(self, work: str) -> None:
+        """Begin ``work``; what was begun before is done."""
+        self.end()
+        print(f"{self._label}: {work} ... ", end="", flush=True)
+        self._since = perf_counter()
+
+    def end(self, result: str = "") -> None:
+        """All work is done, or has ended with ``result``."""
+        if self._since is not None:
+            print(result or f"{perf_counter() - self._since:.1f} s", flush=True)
+        self._since = None

@@ -1,0 +1,1 @@
+"""FMUs as an importer sees them, the master that couples the three, and which FMUs drive."""

@@ -1,0 +1,270 @@
+"""The one place where driving function, vehicle and driver are coupled: an FMI 2.0 master.
+
+All three step with the outputs of the last communication point (Jacobi), so none of them depends on
+the order of stepping. Nothing is wired by hand: see ``connections``.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, redirect_stderr
+from dataclasses import dataclass, field
+from io import StringIO
+from math import ceil
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from ..instance import ModelError
+from ..recordings.recording import COLUMNS, Recording
+from .fmu import Fmu, Place, Said, Slave, Value, unpack
+from .native_files import readable_values
+
+# The vehicle comes first: the function plans its first outputs from where the vehicle is.
+PARTS: Final = {
+    "vehicle": "LongitudinalVehicle",
+    "driver": "ScriptedDriver",
+    "pldf": "AdaptivePLDF",
+}
+STEP_S: Final = 0.01
+STANDSTILL_MPS: Final = 0.1
+STANDSTILL_MAX_S: Final = 60.0
+# Slower than this on average, a drive is given up.
+SLOWEST_MPS: Final = 10.0 / 3.6
+_PROGRESS_STEPS: Final = 200
+
+ARRIVED: Final = "reached the end of the route"
+
+# Column of the recording -> output in which it is seen.
+_SEEN: Final = {
+    "s_m": ("vehicle", "s_m"),
+    "speed_mps": ("vehicle", "speed_mps"),
+    "acceleration_mps2": ("vehicle", "acceleration_mps2"),
+    "mode": ("pldf", "mode"),
+    "gas_pedal": ("driver", "driver.gas_pedal"),
+    "brake_pedal": ("driver", "driver.brake_pedal"),
+    "set_speed_mps": ("pldf", "set_speed_mps"),
+    "set_speed_offset_mps": ("pldf", "set_speed_offset_mps"),
+    "base_mps": ("pldf", "base_speed_mps"),
+    "learned_delta_mps": ("pldf", "hmi.learned_delta_mps"),
+    "limit_mps": ("pldf", "limit_mps"),
+}
+
+Values = Mapping[str, Mapping[str, Value]]
+Progress = Callable[[float], None]
+Link = tuple[Place, Place]
+Rows = list[list[float]]
+
+
+class Connection(NamedTuple):
+    """An output and the input that it feeds, each as (part, variable)."""
+
+    source: tuple[str, str]
+    target: tuple[str, str]
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """What came out of one drive.
+
+    Attributes:
+        recording: one row per step.
+        outputs: outputs of the driving function at the end, by name.
+        said: messages of the FMUs.
+        arrived: the vehicle reached the end of the route.
+        ending: how the drive ended, for people.
+    """
+
+    recording: Recording
+    outputs: dict[str, float]
+    said: list[Said]
+    arrived: bool
+    ending: str
+
+
+@dataclass(frozen=True)
+class Course:
+    """How far, how fast and how finely is driven.
+
+    Attributes:
+        length_m: the drive ends when the vehicle is here.
+        step_s: communication step.
+        progress: called now and then with the vehicle's position in m.
+    """
+
+    length_m: float
+    step_s: float = STEP_S
+    progress: Progress = field(default=lambda _: None)
+
+
+@contextmanager
+def unpacked(folder: Path) -> Iterator[dict[str, Fmu]]:
+    """Unpack the three FMUs in ``folder`` for any number of drives; by part.
+
+    Raises:
+        ModelError: one of them is missing or not usable, or does not fit the others.
+    """
+    with TemporaryDirectory(prefix="pldf-", ignore_cleanup_errors=True) as place:
+        fmus = {
+            part: unpack(folder / f"{name}.fmu", Path(place) / name) for part, name in PARTS.items()
+        }
+        connections(fmus)
+        yield fmus
+
+
+def connections(fmus: Mapping[str, Fmu]) -> list[Connection]:
+    """Return what feeds what.
+
+    The rule: an input is fed by the output of the same name of another part. An input
+    ``vehicle.NAME`` is fed by the vehicle's output ``NAME``. All other inputs keep their start
+    value.
+
+    Raises:
+        ModelError: two outputs have the name, or type or unit of the two ends differ.
+    """
+    sources: dict[str, list[tuple[str, str]]] = {}
+    for part, fmu in fmus.items():
+        for signal in fmu.named("output"):
+            sources.setdefault(signal.name, []).append((part, signal.name))
+            if part == "vehicle":
+                sources.setdefault(f"vehicle.{signal.name}", []).append((part, signal.name))
+    found = []
+    for part, fmu in fmus.items():
+        for signal in fmu.named("input"):
+            feeding = [source for source in sources.get(signal.name, ()) if source[0] != part]
+            if len(feeding) > 1:
+                raise ModelError(f"{part}, {signal.name}: more than one output has this name")
+            if feeding:
+                found.append(Connection(feeding[0], (part, signal.name)))
+                _require_match(fmus, found[-1])
+    return found
+
+
+def _require_match(fmus: Mapping[str, Fmu], connection: Connection) -> None:
+    source, target = (fmus[part].signals[name] for part, name in connection)
+    ends = [(s.kind, s.unit, s.enumeration) for s in (source, target)]
+    if ends[0] != ends[1]:
+        raise ModelError(
+            f"{source.name} and {target.name} differ in type or unit; build all FMUs anew with "
+            "'pldf build'"
+        )
+
+
+def drive(fmus: Mapping[str, Fmu], values: Values, course: Course) -> Drive:
+    """Drive ``course`` once.
+
+    Args:
+        fmus: from ``unpacked``.
+        values: per part, parameters and unconnected inputs to set, by name; files of roads and
+            scripts as for Python FMUs.
+        course: where to stop, and the step.
+
+    Raises:
+        ModelError: an FMU refused a value or a call.
+    """
+    values = readable_values(fmus, values)
+    slaves: dict[str, Slave] = {}
+    with _silenced(slaves):
+        try:
+            return _drive(fmus, slaves, values, course)
+        finally:
+            for slave in slaves.values():
+                slave.free()
+
+
+@contextmanager
+def _silenced(slaves: Mapping[str, Slave]) -> Iterator[None]:
+    """Keep back what the FMUs print on stderr of what their loggers have said already."""
+    printed = StringIO()
+    try:
+        with redirect_stderr(printed):
+            yield
+    finally:
+        rest = printed.getvalue()
+        for part, name in PARTS.items():
+            for said in slaves[part].said if part in slaves else ():
+                rest = rest.replace(f"{name} {part!r}: {said.text}\n", "")
+        sys.stderr.write(rest)
+
+
+def _drive(
+    fmus: Mapping[str, Fmu], slaves: dict[str, Slave], values: Values, course: Course
+) -> Drive:
+    wires = connections(fmus)
+    for part, fmu in fmus.items():
+        fed = [wire.target[1] for wire in wires if wire.target[0] == part]
+        slaves[part] = Slave(fmu, part, fed)
+        slaves[part].set(values.get(part, {}))
+    links = [
+        (slaves[source[0]].outputs[source[1]], slaves[target[0]].inputs[target[1]])
+        for source, target in wires
+    ]
+    _initialize(slaves, links)
+    rows, ending = _run(slaves, links, course)
+    outputs = {name: float(place.value) for name, place in slaves["pldf"].outputs.items()}
+    for slave in slaves.values():
+        slave.terminate()
+    eligible = float(values.get("pldf", {}).get("eligible", 1))
+    return Drive(
+        recording=_recording(rows, course.step_s, eligible),
+        outputs=outputs,
+        said=[said for slave in slaves.values() for said in slave.said],
+        arrived=ending == ARRIVED,
+        ending=ending,
+    )
+
+
+def _initialize(slaves: Mapping[str, Slave], links: list[Link]) -> None:
+    """Make the first outputs fit together: each part knows the outputs of those before it.
+
+    The function comes last and is asked once: planning takes time.
+    """
+    for slave in slaves.values():
+        slave.begin()
+        slave.write()
+        slave.read()
+        _exchange(links)
+    for slave in slaves.values():
+        slave.ready()
+
+
+def _run(slaves: Mapping[str, Slave], links: list[Link], course: Course) -> tuple[Rows, str]:
+    """Step until the drive ends; return what was seen before each step and how it ended."""
+    rows: Rows = []
+    seen = [slaves[part].outputs[name] for part, name in _SEEN.values()]
+    position, speed = (slaves["vehicle"].outputs[name] for name in ("s_m", "speed_mps"))
+    moved = 0  # last step at which the vehicle moved
+    time_max_s = STANDSTILL_MAX_S + course.length_m / SLOWEST_MPS
+    for k in range(ceil(time_max_s / course.step_s)):
+        for slave in slaves.values():
+            slave.read()
+        if position.value >= course.length_m:
+            return rows, ARRIVED
+        moved = k if speed.value > STANDSTILL_MPS else moved
+        if (k - moved) * course.step_s > STANDSTILL_MAX_S:
+            return rows, f"stood still for {STANDSTILL_MAX_S:g} s at {position.value:.0f} m"
+        rows.append([place.buffer[place.at] for place in seen])
+        if k % _PROGRESS_STEPS == 0:
+            course.progress(position.value)
+        _exchange(links)
+        for slave in slaves.values():
+            slave.write()
+            slave.step(k * course.step_s, course.step_s)
+    return rows, f"only at {position.value:.0f} m after {time_max_s:.0f} s"
+
+
+def _exchange(links: list[Link]) -> None:
+    for source, target in links:
+        target.buffer[target.at] = source.buffer[source.at]
+
+
+def _recording(rows: Rows, step_s: float, eligible: float) -> Recording:
+    values = np.array(rows, dtype=np.float64).reshape(len(rows), len(_SEEN))
+    columns = dict(zip(_SEEN, values.T, strict=True))
+    columns["profile_mps"] = columns["base_mps"] + columns.pop("learned_delta_mps")
+    columns["time_s"] = np.arange(float(len(rows))) * step_s
+    columns["eligible"] = np.full(len(rows), eligible)
+    return Recording({name: np.ascontiguousarray(columns[name]) for name in COLUMNS})

@@ -1,0 +1,62 @@
+"""Roads and scripts for native FMUs, which parse neither OpenDRIVE nor CSV: prepared on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+from typing import Final
+
+from vehicle_models.driver_script import read_script, script_arrays
+
+from ..roads import read_route
+from .fmu import Fmu, Value
+from .prepared import SUFFIX, prepared_route, prepared_script
+
+
+def _route(path: Path) -> bytes:
+    return prepared_route(read_route(path))
+
+
+def _script(path: Path) -> bytes:
+    return prepared_script(script_arrays(read_script(path)))
+
+
+# parameter -> how its file is prepared
+_PREPARE: Final[dict[str, Callable[[Path], bytes]]] = {
+    "route_file": _route,
+    "script_file": _script,
+}
+
+
+def readable_values(
+    fmus: Mapping[str, Fmu], values: Mapping[str, Mapping[str, Value]]
+) -> dict[str, dict[str, Value]]:
+    """Return ``values`` with every file that a native FMU is to read in the form it can read.
+
+    What is prepared lies beside the unpacked FMUs and goes with them.
+
+    Raises:
+        ModelError: a route or a script cannot be read; names file and line.
+    """
+    return {
+        part: {name: _readable(fmus[part], name, value) for name, value in chosen.items()}
+        for part, chosen in values.items()
+    }
+
+
+def _readable(fmu: Fmu, name: str, value: Value) -> Value:
+    if not (fmu.native and name in _PREPARE and value):
+        return value
+    path = Path(str(value))
+    return value if path.suffix == SUFFIX else str(_prepared(fmu.folder.parent, name, path))
+
+
+@cache
+def _prepared(folder: Path, name: str, path: Path) -> Path:
+    data = _PREPARE[name](path)
+    # A name of its own: other processes of a study prepare the same file.
+    with NamedTemporaryFile(dir=folder, suffix=SUFFIX, delete=False) as file:
+        file.write(data)
+    return Path(file.name)

@@ -1,0 +1,62 @@
+"""Routes and driver scripts as float64 columns, so that a native FMU parses neither XML nor CSV.
+
+The layout is described to the byte in ``docs/native.md``; ``native/profile.c`` reads it.
+"""
+
+from __future__ import annotations
+
+import zlib
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from ..files.disk import replace_file
+from ..instance import ModelError
+from ..roads import Route, fingerprint, packed_route, route_arrays
+from ..roads.load import PACKED
+
+SUFFIX: Final = ".prepared"
+_ALIGNMENT: Final = 64
+
+
+def prepared_route(route: Route) -> bytes:
+    """Return the file of ``route`` with the arrays that the kernel needs."""
+    return _prepared("route", fingerprint(route), route_arrays(route), route.has_line)
+
+
+def packed_files() -> dict[str, bytes]:
+    """Return the files of all packed routes by their path in ``resources/``."""
+    return {f"route/{i}{SUFFIX}": prepared_route(packed_route(i)) for i in range(len(PACKED))}
+
+
+def prepared_script(columns: tuple[Any, ...]) -> bytes:
+    """Return the file of a driver's script, given as the kernel's arrays."""
+    return _prepared("script", "0" * 16, columns, False)
+
+
+def write_prepared_route(route: Route, path: Path) -> None:
+    """Write the file of ``route``; ModelError if that is not possible."""
+    _write(path, prepared_route(route))
+
+
+def write_prepared_script(columns: tuple[Any, ...], path: Path) -> None:
+    """Write the file of a driver's script; ModelError if that is not possible."""
+    _write(path, prepared_script(columns))
+
+
+def _write(path: Path, data: bytes) -> None:
+    try:
+        replace_file(path, data)
+    except OSError as error:
+        raise ModelError(f"{path}: cannot be written ({error.strerror})") from None
+
+
+def _prepared(kind: str, key: str, columns: tuple[Any, ...], has_line: bool) -> bytes:
+    head = (
+        f"PLDF-PREPARED 1\nkind {kind}\nkey {key}\ncolumns {len(columns)}\n"
+        f"rows {len(columns[0])}\nline {int(has_line)}\nend"
+    )
+    head += " " * (-(len(head) + 1) % _ALIGNMENT) + "\n"
+    body = head.encode() + b"".join(np.asarray(c, "<f8").tobytes() for c in columns)
+    return body + b"crc32 %08x\n" % zlib.crc32(body)

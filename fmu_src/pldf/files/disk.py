@@ -1,0 +1,190 @@
+"""Reading, replacing and locking files so that nobody ever sees or leaves half of one.
+
+The lock is one per folder, between processes and between instances in one process. It is the
+operating system's (``flock``, on Windows ``msvcrt.locking``): it vanishes with the
+process that holds it, so a killed process never blocks anybody. The file it sits on is removed at
+release; what is left of a killed process is reused.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from itertools import count
+from pathlib import Path
+from typing import Final, TypeVar
+
+from ..instance import ModelError
+
+LOCK_NAME: Final = "pldf-store.lock"
+_POLL_S: Final = 0.01
+_TAKEN: Final = (errno.EAGAIN, errno.EACCES, errno.EDEADLK)
+# Windows refuses to rename or open a file for the moment that somebody else has it open.
+_TRIES: Final = 100 if os.name == "nt" else 1
+_RETRY_S: Final = 0.02
+
+T = TypeVar("T")
+
+
+@contextmanager
+def folder_lock(folder: Path, timeout_s: float) -> Iterator[None]:
+    """Hold the lock of ``folder``, which must exist; wait for it up to ``timeout_s`` seconds.
+
+    Raises:
+        ModelError: somebody else held it all the time.
+        OSError: the lock file cannot be created, or the file system knows no locks.
+    """
+    path = folder / LOCK_NAME
+    deadline_s = time.monotonic() + timeout_s
+    while (descriptor := _acquire(path)) is None:
+        if time.monotonic() >= deadline_s:
+            raise ModelError(
+                f"{path}: held by another process for {timeout_s:g} s, nothing was changed; "
+                "try again when it has finished"
+            )
+        time.sleep(_POLL_S)
+    try:
+        yield
+    finally:
+        _release(path, descriptor)
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def _lock(descriptor: int) -> None:
+        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+
+    def _acquire(path: Path) -> int | None:
+        try:
+            descriptor = os.open(path, os.O_RDWR | os.O_CREAT)
+        except PermissionError:  # being removed by its last holder
+            return None
+        return descriptor if _locked(descriptor) else None
+
+    def _release(path: Path, descriptor: int) -> None:
+        os.close(descriptor)
+        with suppress(OSError):  # refused while others have it open: they reuse it
+            path.unlink()
+
+else:
+    import fcntl
+
+    def _lock(descriptor: int) -> None:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+    def _acquire(path: Path) -> int | None:
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        if not _locked(descriptor):
+            return None
+        if not _is_at(path, descriptor):  # its last holder has removed it meanwhile
+            os.close(descriptor)
+            return None
+        return descriptor
+
+    def _release(path: Path, descriptor: int) -> None:
+        with suppress(OSError):
+            path.unlink()  # while it is locked: who waits for it sees that it is gone
+        os.close(descriptor)
+
+    def _is_at(path: Path, descriptor: int) -> bool:
+        try:
+            return os.path.samestat(os.stat(path), os.fstat(descriptor))
+        except FileNotFoundError:
+            return False
+
+
+def _locked(descriptor: int) -> bool:
+    try:
+        _lock(descriptor)
+    except OSError as error:
+        os.close(descriptor)
+        if error.errno in _TAKEN:
+            return False
+        raise
+    return True
+
+
+def read_file(path: Path, size_max: int) -> bytes:
+    """Return the content of the regular file ``path`` of at most ``size_max`` bytes.
+
+    Raises:
+        OSError: there is no such file, or it cannot be read.
+    """
+    return _patiently(lambda: _read_file(path, size_max))
+
+
+def _read_file(path: Path, size_max: int) -> bytes:
+    status = os.stat(path)
+    if not stat.S_ISREG(status.st_mode):  # a folder; or a pipe or device, which would never end
+        raise OSError(errno.EINVAL, "not a regular file")
+    if status.st_size > size_max:
+        raise OSError(errno.EFBIG, f"longer than {size_max} bytes")
+    return path.read_bytes()
+
+
+def rename_file(path: Path, to: Path) -> None:
+    """Rename ``path`` for good; needs the lock, under which ``to`` was found free."""
+    _patiently(lambda: os.replace(path, to))
+    _sync_folder(path.parent)
+
+
+def free_name(pattern: Path) -> Path:
+    """Return ``pattern`` with the first number for ``{}`` that is not taken; needs the lock."""
+    names = (pattern.with_name(pattern.name.format(number)) for number in count(1))
+    return next(name for name in names if not os.path.lexists(name))
+
+
+def replace_file(path: Path, data: bytes) -> None:
+    """Write ``data`` to the disk, then put it in the place of ``path``; needs the lock.
+
+    Raises:
+        OSError: it failed; ``path`` is as it was, and nothing half-written is left.
+    """
+    temporary = path.with_name(path.name + ".tmp")
+    with suppress(FileNotFoundError):
+        temporary.unlink()  # of a killed process; opening it instead would follow a link
+    try:
+        with open(temporary, "xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        _patiently(lambda: os.replace(temporary, path))
+    except BaseException:
+        with suppress(OSError):
+            temporary.unlink()
+        raise
+    _sync_folder(path.parent)
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make a new name last through a power cut, where the system can do that for folders."""
+    if os.name == "nt":
+        return
+    with suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+
+
+def _patiently(action: Callable[[], T]) -> T:
+    for _ in range(_TRIES - 1):
+        try:
+            return action()
+        except PermissionError:
+            time.sleep(_RETRY_S)
+    return action()
+
+
+def reason(error: Exception) -> str:
+    """Return what the system says about ``error``, without the file name."""
+    if isinstance(error, MemoryError):
+        return "it does not fit into memory"
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)

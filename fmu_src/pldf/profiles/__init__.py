@@ -1,0 +1,1 @@
+"""Learned profiles: what is stored, its file, and the store on disk."""

@@ -1,0 +1,1 @@
+"""Recordings of drives: columns, interventions, offline learning, exports."""

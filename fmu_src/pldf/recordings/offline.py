@@ -1,0 +1,161 @@
+"""Learning from a recording, outside any FMU: the same kernel, the same result to the bit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..function import DrivingFunction
+from ..instance import ModelError, view
+from ..kernel.interpolation import cell_at
+from ..kernel.replay import Samples, replay
+from ..kernel.stretch import stretch_factor, stretched_position
+from ..profiles.store import Iteration, StoredProfile
+from ..roads import Route, fingerprint
+from .recording import Recording, completed
+
+SAME_MPS = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Learned:
+    """What a recording taught.
+
+    Attributes:
+        function: the instance that learned, with trace, rates and the profile driven.
+        profile: what was known before, with the new iteration added.
+        iteration: that iteration.
+    """
+
+    function: DrivingFunction
+    profile: StoredProfile
+    iteration: Iteration
+
+
+def learn_from(
+    recording: Recording,
+    route: Route,
+    stored: StoredProfile | None = None,
+    function: DrivingFunction | None = None,
+) -> Learned:
+    """Apply SPAA to ``recording`` of a drive on ``route`` that followed the newest of ``stored``.
+
+    Args:
+        recording: columns as read; absent ones are derived.
+        route: the route driven.
+        stored: profile file of the driver; None: the drive followed the base profile.
+        function: an instance whose parameters count (default: all defaults).
+
+    Raises:
+        ModelError: the recording is not on the route, or ``stored`` belongs to another route.
+    """
+    function = function or DrivingFunction()
+    function.prepare(route)
+    if stored is None:
+        base = np.array(function.profile.base_mps)
+        stored = StoredProfile(function.record.driver_id, fingerprint(route), base)
+    elif stored.route != fingerprint(route):
+        raise ModelError(
+            f"the profile belongs to route {stored.route}, not to {route.name} "
+            f"({fingerprint(route)}); give the route of that drive or leave out --profile-in"
+        )
+    function.follow(stored)
+    columns = completed(recording, function.route, function.profile).columns
+    samples = Samples(*(view(np.ascontiguousarray(columns[name])) for name in Samples._fields))
+    replay(function.record, function.route, function.trace, samples)
+    if function.record.nodes < 2:
+        raise ModelError(
+            f"the recording (s_m {columns['s_m'].min():g} to {columns['s_m'].max():g}) does not "
+            f"advance on {route.name} (0 to {route.length_m:g} m)"
+        )
+    iteration = function.learn()
+    return Learned(function, stored.with_iteration(iteration), iteration)
+
+
+def explain(learned: Learned) -> dict[str, Any]:
+    """Return what was learned where and why, ready for JSON."""
+    st = learned.function.record
+    return {
+        "iteration": learned.iteration.number,
+        "rates": {
+            "pedal": st.pedal_ns / st.total_ns,
+            "set_speed": st.set_speed_ns / st.total_ns,
+            "combined": st.combined_ns / st.total_ns,
+        },
+        "interventions": [_explain_intervention(learned, k) for k in range(st.drive_interventions)],
+        "segments": _segments(learned),
+        "offsets": _offsets(learned),
+    }
+
+
+def _explain_intervention(learned: Learned, k: int) -> dict[str, Any]:
+    f = learned.function
+    start, end = f.trace.start_m[k], f.trace.end_m[k]
+    last = k == f.record.drive_interventions - 1
+    entry: dict[str, Any] = {
+        "number": k + 1,
+        "start_m": start,
+        "end_m": end,
+        "truncated": bool(f.record.intervening and last),
+    }
+    if end <= start:
+        return {**entry, "learned_m": 0, "why_not": "the car did not move"}
+    alpha = stretch_factor(f.record, f.route, f.trace, k)
+    stretched = stretched_position(start, end, alpha)
+    mine = (learned.iteration.intervention == k + 1) & (
+        learned.iteration.drive == learned.iteration.number
+    )
+    entry.update(stretch_factor=alpha, stretched_start_m=stretched, learned_m=int(mine.sum()))
+    if not mine.any():
+        entry["why_not"] = _why_not(learned, stretched, end)
+    return entry
+
+
+def _why_not(learned: Learned, start_m: float, end_m: float) -> str:
+    trace, st = learned.function.trace, learned.function.record
+    nodes = len(trace.usable)
+    reach = slice(cell_at(nodes, start_m), cell_at(nodes, end_m) + 1)
+    if np.asarray(trace.gap)[reach].any():
+        return f"hole of more than {st.learning_recording_gap_s:g} s in the recording"
+    if not np.asarray(trace.usable)[reach].all():
+        return f"below {3.6 * st.learning_speed_min_mps:g} km/h or not eligible"
+    return (
+        f"within {3.6 * st.learning_deviation_min_mps:.3g} km/h of the profile, or part of the "
+        "segment of another intervention"
+    )
+
+
+def _segments(learned: Learned) -> list[dict[str, Any]]:
+    """Runs of nodes that this drive changed for the same reason."""
+    new, profile = learned.iteration, learned.function.profile
+    change = new.learned_mps - np.asarray(profile.learned_mps)
+    touched = (new.drive == new.number) & (np.abs(change) > SAME_MPS)
+    return [
+        {
+            "start_m": start,
+            "end_m": end,
+            "cause": f"intervention {cause:g}" if cause else "set speed",
+            "mean_change_mps": float(change[start : end + 1].mean()),
+            "largest_change_mps": float(max(change[start : end + 1], key=abs)),
+        }
+        for start, end, cause in _runs(np.where(touched, new.intervention, -1.0))
+        if cause >= 0.0
+    ]
+
+
+def _offsets(learned: Learned) -> list[dict[str, Any]]:
+    """Runs of cells with the same learned offset."""
+    return [
+        {"start_m": start, "end_m": end + 1, "offset_mps": value}
+        for start, end, value in _runs(learned.iteration.offset_mps)
+        if value != 0.0
+    ]
+
+
+def _runs(values: np.typing.NDArray[np.float64]) -> list[tuple[int, int, float]]:
+    """Return (first, last, value) of each run of equal values."""
+    starts = np.flatnonzero(np.diff(values, prepend=np.nan) != 0.0)
+    ends = np.append(starts[1:] - 1, len(values) - 1)
+    return [(int(a), int(b), float(values[a])) for a, b in zip(starts, ends, strict=True)]

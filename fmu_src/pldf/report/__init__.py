@@ -1,0 +1,1 @@
+"""What people look at: figures for papers, and the interactive report."""

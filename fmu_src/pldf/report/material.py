@@ -1,0 +1,230 @@
+"""What a report is made of, read from the folder of a study."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from ..analysis.analysis import Analysis, Source
+from ..analysis.long_run import Columns, read_long_run
+from ..function import DrivingFunction
+from ..instance import ModelError
+from ..kernel.parameters import PlannerParameters
+from ..kernel.signals import signals_of
+from ..profiles.stored_profile import Iteration, StoredProfile
+from ..recordings.recording import Recording
+from ..recordings.steps import Steps, explain_steps
+from ..roads import Route, fingerprint, route_arrays
+from ..route_facts import RouteFacts, route_facts
+from ..study.phases import choose_route
+
+STUDY: Final = "study.toml"
+VERSIONS: Final = "versions.json"
+LONG_RUN: Final = "long_run.csv"
+_SAME_LIMIT_MPS: Final = 0.1
+_SAME_LIMIT_SHARE: Final = 0.95
+
+
+@dataclass(frozen=True, eq=False)
+class DriverShown:
+    """One participant whose recordings are there.
+
+    Attributes:
+        participant: who.
+        recordings: complete, by phase, in order of the study.
+        profile: base and the profile after each learned drive (the note of its iteration), as far
+            as it was driven.
+        steps: one intervention explained; None if nothing was learned from ``explained``.
+        explained: the first drive learned from.
+        acting: the drives recorded in which the driver intervenes.
+    """
+
+    participant: str
+    recordings: Mapping[str, Recording]
+    profile: StoredProfile
+    steps: Steps | None
+    explained: str
+    acting: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Material:
+    """Everything that the report shows.
+
+    Attributes:
+        analysis: the numbers.
+        title: of the study.
+        route: the road and its base profile.
+        driver: one participant in detail; None without recordings.
+        long_run: columns of ``long_run.csv`` by stretch factor; empty if there is none.
+        texts: files to print in full for reproduction, by name.
+        parameters: part (pldf, vehicle) -> FMI name -> value; as far as the run wrote them.
+        participants: parameter of the simulated drivers -> smallest, median and largest value.
+    """
+
+    analysis: Analysis
+    title: str
+    route: RouteFacts
+    driver: DriverShown | None
+    long_run: Mapping[float, Columns]
+    texts: Mapping[str, str]
+    parameters: Mapping[str, Mapping[str, float]]
+    participants: Mapping[str, tuple[float, float, float]]
+
+    @property
+    def simulated(self) -> bool:
+        """True if a simulation wrote the folder."""
+        return STUDY in self.texts
+
+
+def collect(analysis: Analysis, source: Source, driver: str | None = None) -> Material:
+    """Read what the report of a study shows beside its numbers.
+
+    Args:
+        analysis: of the study.
+        source: where it lies.
+        driver: the participant to show in detail; None: the one nearest to the median effect.
+
+    Raises:
+        ModelError: there are no recordings of ``driver``, or they are not from the route.
+    """
+    folder = source.folder
+    texts = {
+        name: (folder / name).read_text(encoding="utf-8")
+        for name in (STUDY, VERSIONS)
+        if (folder / name).exists()
+    }
+    parameters = json.loads(texts.get(VERSIONS, "{}")).get("parameters", {})
+    route = source.route or _route_of(source)
+    function = _function(parameters.get("pldf", {}))
+    shown = _choose(analysis, source, driver)
+    return Material(
+        analysis=analysis,
+        title=str(source.study.get("title", f"Study {folder.resolve().name}")),
+        route=_facts(route, function),
+        driver=None if shown is None else _driver(shown, source, route, function),
+        long_run=read_long_run(folder / LONG_RUN) if (folder / LONG_RUN).exists() else {},
+        texts=texts,
+        parameters=parameters,
+        participants=_parameter_ranges(folder / "participants.csv"),
+    )
+
+
+def _route_of(source: Source) -> Route:
+    """Return the route of the study file, if that can be found without knowing its place."""
+    name = str(source.study.get("road", {}).get("route", "study"))
+    if name != "study" and not name.isdigit():
+        raise ModelError(f"{source.folder}: driven on {name}; name the route with --route")
+    return choose_route(name)[0]
+
+
+def _function(values: Mapping[str, float]) -> DrivingFunction:
+    """Return a driving function with the parameters, by FMI name, of the run."""
+    function = DrivingFunction()
+    for signal in signals_of(function.record):
+        if signal.causality == "parameter" and signal.name in values:
+            setattr(function.record, signal.field, values[signal.name])
+    return function
+
+
+def _facts(route: Route, function: DrivingFunction) -> RouteFacts:
+    """Return the facts of the route as planned with the parameters of the run."""
+    function.prepare(route)
+    facts = route_facts(route)
+    default = PlannerParameters().planner_lateral_accel_max_mps2
+    faster = (function.record.planner_lateral_accel_max_mps2 / default) ** 0.5
+    return replace(
+        facts,
+        base_mps=np.array(function.profile.base_mps),
+        curve_speed_mps=faster * facts.curve_speed_mps,
+    )
+
+
+def _parameter_ranges(path: Path) -> Mapping[str, tuple[float, float, float]]:
+    """Return smallest, median and largest value of each parameter of the simulated drivers."""
+    if not path.exists():
+        return {}
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    found = {}
+    for name in rows[0] if rows else ():
+        if name not in ("participant", "seed"):
+            try:
+                values = [float(row[name]) for row in rows]
+            except ValueError as error:
+                raise ModelError(f"{path}, {name}: {error}") from error
+            found[name] = (min(values), float(np.median(values)), max(values))
+    return found
+
+
+def _choose(analysis: Analysis, source: Source, wanted: str | None) -> str | None:
+    """Return whom to show: of those recorded, who is nearest to the median fall of the rate."""
+    recorded = source.recordings()
+    first = _first_taught(source)
+    complete = [p for p in analysis.participants if (p, first) in recorded]
+    if wanted is not None:
+        if wanted not in complete:
+            raise ModelError(
+                f"{source.folder}: no recordings/{wanted}_{first}.csv, so {wanted} cannot "
+                f"be shown; recorded are {', '.join(complete) or 'none'}"
+            )
+        return wanted
+    if not complete:
+        return None
+    a, b = (analysis.per_participant("combined", system) for system in "AB")
+    falls = dict(zip(analysis.participants, a - b, strict=True))
+    median = float(np.median(a - b))
+    return min(complete, key=lambda name: abs(falls[name] - median))
+
+
+def _first_taught(source: Source) -> str:
+    """Return the first drive that is learned from; it follows the base profile."""
+    return next((phase.name for phase in source.order() if phase.learn), "")
+
+
+def _driver(
+    participant: str, source: Source, route: Route, function: DrivingFunction
+) -> DriverShown:
+    first = _first_taught(source)
+    known = replace(source, route=route)
+    paths = {phase: path for (who, phase), path in known.recordings().items() if who == participant}
+    recordings = {phase: known.read(path) for phase, path in paths.items()}
+    for phase, recording in recordings.items():
+        _require_route(paths[phase], recording, route)
+    profile = StoredProfile(0, fingerprint(route), np.array(function.profile.base_mps))
+    for taught, seen in known.development().items():
+        if seen in recordings:
+            profile = profile.with_iteration(_followed(recordings[seen], profile, taught))
+    return DriverShown(
+        participant=participant,
+        recordings=recordings,
+        profile=profile,
+        steps=explain_steps(recordings[first], route, function),
+        explained=first,
+        acting=tuple(p for names in source.compared().values() for p in names if p in recordings),
+    )
+
+
+def _require_route(path: Path, recording: Recording, route: Route) -> None:
+    """Raise ModelError unless the recorded limits are those of the route."""
+    limit = np.asarray(route_arrays(route).limit_mps)
+    cell = np.clip(np.floor(recording["s_m"]), 0, len(limit) - 1).astype(np.intp)
+    same = np.abs(recording["limit_mps"] - limit[cell]) < _SAME_LIMIT_MPS
+    if np.mean(same) < _SAME_LIMIT_SHARE:
+        raise ModelError(
+            f"{path}: not driven on {route.name}: other limits; name the route with --route"
+        )
+
+
+def _followed(recording: Recording, profile: StoredProfile, taught: str) -> Iteration:
+    """Return the profile that a drive followed as the next iteration of ``profile``."""
+    passed = np.maximum.accumulate(recording["s_m"])
+    speeds = np.interp(np.arange(float(profile.nodes)), passed, recording["profile_mps"])
+    zeros = np.zeros(profile.nodes)
+    return Iteration(len(profile.iterations) + 1, taught, 0, speeds, zeros, zeros, zeros)

@@ -1,0 +1,200 @@
+"""The profile store of the native driving function, without Python and on every platform."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmi_host import Host, Slave
+from native_drives import CASES, by_source
+from native_hosts import PLATFORMS, Hosts
+from pldf.profiles.profile_file import decode
+
+CASE = CASES["learn"]
+SCRIPT = CASE.script()[:1500]
+FOLDER_MAX = 3999  # bytes: names in a store, and what is added to them, must fit into 4095
+KEPT_MAX = 9999
+REFUSED = 2  # profile status
+
+
+class Drives:
+    """Drives on one platform with one store, which is not there yet."""
+
+    def __init__(self, hosts: Hosts, platform: str, tmp_path: Path) -> None:
+        self.hosts, self.platform, self.folder = hosts, platform, tmp_path
+        self.script = tmp_path / "script"
+        SCRIPT.tofile(self.script)
+        self.describe(tmp_path / "Fahrer Ж 車" / "neu")
+
+    def describe(self, store: Path) -> None:
+        """Say that this is the store."""
+        where = PLATFORMS[self.platform]
+        fmu = self.hosts.fmu(self.platform, where.versions[-1], CASE.model)
+        settings = CASE.stored(where.path(store))
+        self.store = store
+        self.description = fmu.described(where, self.folder / "fmu.txt", settings)
+
+    def drive(self, processes: int = 1, instances: int = 1) -> list[bytes]:
+        """Drive in several processes at once, with instances side by side; return all results."""
+        each = [[self.folder / f"{p}-{i}" for i in range(instances)] for p in range(processes)]
+        running = [
+            self.hosts.start(
+                self.platform, "replay", self.description, self.script, *found, cwd=self.folder
+            )
+            for found in each
+        ]
+        for process in running:
+            self.hosts.end(process)
+        return [path.read_bytes() for found in each for path in found]
+
+    def profiles(self) -> dict[str, bytes]:
+        """Return the files in the store by their name behind that of the driver's profile."""
+        names = {path: path.name.removeprefix(NAME) for path in self.store.iterdir()}
+        return {name: path.read_bytes() for path, name in names.items()}
+
+
+NAME = "driver-000000_route-92a6126a3ee130f8"
+
+
+@pytest.fixture(params=PLATFORMS)
+def drives(request: pytest.FixtureRequest, hosts: Hosts, tmp_path: Path) -> Drives:
+    return Drives(hosts, request.param, tmp_path)
+
+
+@pytest.fixture(scope="module")
+def learned(tmp_path_factory: pytest.TempPathFactory) -> tuple[bytes, bytes]:
+    """Return what the source says in a first drive, and the profile that it leaves."""
+    store = tmp_path_factory.mktemp("learned")
+    results = by_source(CASE, SCRIPT, store)
+    (path,) = store.iterdir()
+    return results.tobytes(), path.read_bytes()
+
+
+def test_what_was_learned_beside_another_drive_is_kept_beside_its_profile(
+    drives: Drives, learned: tuple[bytes, bytes]
+) -> None:
+    results, profile = learned
+    assert drives.drive(instances=3) == [results] * 3
+    kept = {f".conflict-{n}.pldf": profile for n in (1, 2)}
+    assert drives.profiles() == {".pldf": profile, **kept}
+
+
+@pytest.mark.parametrize("damage", ["truncated", "flipped", "empty"])
+def test_a_damaged_profile_is_kept_aside(
+    drives: Drives, learned: tuple[bytes, bytes], damage: str
+) -> None:
+    results, profile = learned
+    flipped = profile[:900] + bytes([profile[900] ^ 1]) + profile[901:]
+    bad = {"truncated": profile[:-9], "flipped": flipped, "empty": b""}[damage]
+    drives.store.mkdir(parents=True)
+    (drives.store / f"{NAME}.pldf").write_bytes(bad)
+    (found,) = drives.drive()
+    assert len(found) == len(results)
+    assert drives.profiles() == {".pldf": profile, ".pldf.refused-1": bad}
+
+
+def test_processes_that_end_together_lose_nothing(drives: Drives) -> None:
+    """Every drive continues the profile or is kept beside it; no half of a file, no lock stays."""
+    drives.drive(processes=4)
+    profiles = drives.profiles()
+    saved = {name: len(decode(data, name).iterations) for name, data in profiles.items()}
+    assert saved[".pldf"] + len(saved) - 1 == 4
+
+
+def test_a_store_below_a_long_path(drives: Drives, learned: tuple[bytes, bytes]) -> None:
+    """Longer than the 260 characters that Windows takes without ado."""
+    drives.describe(drives.folder / ("Ж" * 120) / ("n" * 200))
+    assert drives.drive() == [learned[0]]
+    assert drives.profiles() == {".pldf": learned[1]}
+
+
+def test_a_store_whose_path_is_no_text(hosts: Hosts, tmp_path: Path) -> None:
+    """On Windows, whose paths are text; the drive goes on."""
+    drives = Drives(hosts, "win64", tmp_path)
+    drives.describe(Path("STORE"))
+    described = drives.description.read_bytes()
+    drives.description.write_bytes(described.replace(b"Z:STORE", b"Z:\\\xff"))
+    (found,) = drives.drive()
+    names = [v.name for v in hosts.fmu("win64", 3, CASE.model).variables("output")]
+    assert np.frombuffer(found)[names.index("profile.status")] == REFUSED
+
+
+# Here only
+
+
+@pytest.fixture
+def damaged(tmp_path: Path) -> Path:
+    """Return a store with a profile that is not sound."""
+    (tmp_path / f"{NAME}.pldf").write_bytes(b"damaged")
+    return tmp_path
+
+
+def started(native_folder: Path, store: Path | str) -> Slave:
+    host = Host(native_folder / "AdaptivePLDF.fmu")
+    return host.instantiate().start(profile_store=str(store), learn=True)
+
+
+def ended(slave: Slave) -> None:
+    for second in range(3):
+        slave.set(vehicle__s_m=20.0 * second, vehicle__speed_mps=20.0)
+        slave.fmu.doStep(float(second), 1.0)
+    slave.fmu.terminate()
+
+
+def folder_of_length(top: Path, length: int) -> Path:
+    """Return a folder whose path has this many bytes."""
+    name = "n" * 99
+    count, rest = divmod(length - len(str(top)), len(name) + 1)
+    return Path(str(top) + f"/{name}" * (count - 1), "n" * (len(name) + rest))
+
+
+def test_a_store_with_the_longest_path(native_folder: Path, tmp_path: Path) -> None:
+    store = folder_of_length(tmp_path, FOLDER_MAX)
+    store.mkdir(parents=True)
+    for number in (1, 2):
+        (store / f"{NAME}.pldf").write_bytes(b"damaged")
+        slave = started(native_folder, store)
+        assert f".refused-{number}" in slave.texts("logStatusWarning")[0]
+        ended(slave)
+        assert not slave.texts()
+        slave.free()
+
+
+def test_a_store_with_a_path_that_is_too_long(native_folder: Path, tmp_path: Path) -> None:
+    store = folder_of_length(tmp_path, FOLDER_MAX + 1)
+    slave = started(native_folder, store)
+    assert slave.get("profile.status") == REFUSED
+    (text,) = slave.texts("logStatusWarning")
+    assert f"{FOLDER_MAX + 1} bytes" in text
+    ended(slave)
+    assert not list(tmp_path.iterdir())
+    slave.free()
+
+
+def test_a_damaged_profile_that_cannot_be_renamed_stays(native_folder: Path, damaged: Path) -> None:
+    """Here since there is no name left for it."""
+    for number in range(1, KEPT_MAX + 1):
+        (damaged / f"{NAME}.pldf.refused-{number}").symlink_to("nothing")
+    before = sorted(damaged.iterdir())
+    slave = started(native_folder, damaged)
+    assert slave.get("profile.status") == REFUSED
+    reason = f"{KEPT_MAX} files"
+    assert "left in its place" in (text := slave.texts("logStatusWarning")[0]) and reason in text
+    ended(slave)
+    (text,) = slave.texts()
+    assert text.startswith("profile not saved: ") and "left as it was" in text and reason in text
+    assert sorted(damaged.iterdir()) == before
+    assert (damaged / f"{NAME}.pldf").read_bytes() == b"damaged"
+    slave.free()
+
+
+def test_a_backslash_separates_nothing_on_posix(native_folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "C:").touch()
+    store = tmp_path / "C:\\users\\profiles"
+    slave = started(native_folder, store)
+    assert not slave.texts("logStatusWarning")
+    ended(slave)
+    assert sorted(tmp_path.iterdir()) == [tmp_path / "C:", store]
+    assert [path.name for path in store.iterdir()] == [f"{NAME}.pldf"]
+    slave.free()

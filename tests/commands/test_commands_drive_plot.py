@@ -1,0 +1,286 @@
+"""``pldf drive`` and ``pldf plot``: what they write and say, and how they fail."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import matplotlib.image
+import numpy as np
+import pytest
+from pldf import cli
+from pldf.commands.plot import names_of
+from pldf.recordings.recording import Recording, read_recording, write_recording
+from pldf.report.figures import KM, draw_drive, figure_of
+
+Run = Callable[..., tuple[int, str, str]]
+
+ROAD = "s_m,curvature_per_m,speed_limit_mps\n0,0,20\n150,0.0,20\n400,0,20\n"
+SCRIPT = """at,unit,control,value,duration_s
+0.5,s,resume,,0.3
+5,s,gas,0.3,2.0
+120,m,up_long,,0.3
+250,m,brake,0.2,1.0
+300,m,resume,,0.3
+"""
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Run:
+    """Return a function that runs ``pldf`` in an empty folder without a profile store."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("PLDF_PROFILE_STORE", raising=False)
+
+    def runner(*arguments: str) -> tuple[int, str, str]:
+        try:
+            status = cli.main(arguments)
+        except SystemExit as stop:
+            status = int(stop.code or 0)
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return runner
+
+
+@pytest.fixture
+def drive(run: Run, fmu_folder: Path) -> Run:
+    """Return a function that runs ``pldf drive`` on a short straight road."""
+    Path("road.csv").write_text(ROAD)
+    Path("script.csv").write_text(SCRIPT)
+    common = ("drive", "--fmus", str(fmu_folder), "--route", "road.csv", "--step", "0.05")
+    return lambda *arguments: run(*common, *arguments)
+
+
+def test_a_drive_writes_recording_and_picture(drive: Run) -> None:
+    status, out, err = drive("--driver", "none", "--out", "results")
+    assert (status, err) == (0, "")
+    recording = read_recording("results/drive.csv")
+    assert recording["s_m"][-1] < 400.0
+    assert np.all(recording["limit_mps"] == 20.0)
+    assert matplotlib.image.imread("results/drive.png").shape[1] == 1650
+    assert "reached the end of the route" in out
+    assert "pedal 0.0%, set speed 0.0%, combined 0.0%" in out
+
+
+def test_a_script_drives_and_its_lesson_is_told(drive: Run) -> None:
+    status, out, err = drive(
+        "--script", "script.csv", "--learn", "FAITHFUL", "--store", "s", "--out", "a.csv",
+        "--plot", "pictures/a.png", "--driver-id", "17",
+    )  # fmt: skip
+    assert (status, err) == (0, "")
+    assert "2 interventions" in out
+    assert " m as drive 1, on average " in out
+    assert "driver-000017_route-" in out
+    assert Path("pictures/a.png").exists()
+    recording = read_recording("a.csv")
+    assert np.max(recording["gas_pedal"]) == pytest.approx(0.3)
+    assert np.max(recording["set_speed_offset_mps"]) == pytest.approx(5.0 / 3.6)
+    status, out, _ = drive(
+        "--driver-id", "17", "--store", "s", "--driver", "none", "--out", "b.csv"
+    )
+    again = read_recording("b.csv")
+    assert status == 0
+    assert np.max(np.abs(again["profile_mps"] - again["base_mps"])) > 0.2
+    status, out, _ = drive("--driver-id", "17", "--store", "s", "--no-apply", "--out", "c.csv")
+    unlearned = read_recording("c.csv")
+    assert np.array_equal(unlearned["profile_mps"], unlearned["base_mps"])
+
+
+def test_phases_set_what_is_applied_learned_and_who_drives(drive: Run) -> None:
+    options = ("--store", "s", "--set", "wish.offset_mps=4", "--out")
+    assert drive("--phase", "A2", *options, "a2.csv")[0] == 0
+    assert drive("--phase", "A1", *options, "a1.csv")[0] == 0
+    assert drive("--phase", "B3", *options, "b3.csv")[0] == 0
+    a1, a2, b3 = (read_recording(f"{name}.csv") for name in ("a1", "a2", "b3"))
+    assert np.array_equal(a1["speed_mps"], a2["speed_mps"])
+    assert np.max(a2["speed_mps"]) > 21.0
+    assert np.array_equal(a1["profile_mps"], a1["base_mps"])
+    assert np.max(b3["profile_mps"] - b3["base_mps"]) > 0.5
+    assert np.max(b3["gas_pedal"]) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--set", "wish.ofset_mps=3"], "did you mean wish.offset_mps"),
+        (["--set", "learning.weight"], "write learning.weight=VALUE"),
+        (["--set", "zzz=1"], "no such parameter; write e.g. pldf.learning.weight=0.4"),
+        (["--set", "route_id=0"], "write one of vehicle.route_id, driver.route_id, pldf.route_id"),
+        (["--set", "driver.gas_pedal=1"], "no such parameter"),  # the driver feeds it
+        (["--set", "learning.weight=half"], "learning.weight = half: it must be a number"),
+        (["--set", "learn=SOME"], "learn = SOME: it must be off, faithful"),
+        (["--set", "seed=99999999999"], "seed = 99999999999: it must lie within"),
+        (
+            ["--set", "learning.weight=1.5"],
+            "AdaptivePLDF: parameter learning.weight = 1.5: it must",
+        ),
+        (["--driver", "script", "--script", "nowhere.csv"], "cannot read the driver script"),
+        (["--route", "nowhere.xodr"], "nowhere.xodr: cannot be read"),
+        (["--route", "12"], "route_id 12 is unknown; packed routes: 0 = study_road"),
+        (["--fmus", "nowhere"], "pldf build"),
+        (["--plot", "picture.doc"], "picture.doc: cannot be drawn"),
+    ],
+)
+def test_bad_input_is_told_in_one_or_two_lines(
+    drive: Run, arguments: list[str], message: str
+) -> None:
+    status, _, err = drive("--driver", "none", *arguments)
+    assert status == 1
+    assert err.startswith("pldf: ")
+    assert message in err
+    assert err.count("\n") <= 2
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--phase", "C1"],
+        ["--phase", "A1", "--no-apply"],
+        ["--phase", "A1", "--learn", "FAITHFUL"],
+        ["--driver", "preference", "--script", "script.csv"],
+        ["--driver-id", "-3"],
+        ["--step", "0.5"],
+        ["--step", "nan"],
+    ],
+)
+def test_wrong_usage(drive: Run, arguments: list[str]) -> None:
+    status, out, err = drive(*arguments)
+    assert (status, out) == (2, "")
+    assert "pldf drive: error: " in err
+
+
+def test_a_file_that_is_no_fmu(run: Run) -> None:
+    Path("dist").mkdir()
+    Path("dist/LongitudinalVehicle.fmu").write_text("nothing")
+    status, _, err = run("drive")
+    assert status == 1
+    assert "dist/LongitudinalVehicle.fmu: not a usable FMU" in err.replace("\\", "/")
+
+
+def test_learning_without_a_store_is_warned_of(drive: Run) -> None:
+    status, out, err = drive("--learn", "FAITHFUL")
+    assert status == 0
+    assert err.count("\n") == 1
+    assert "no profile store: nothing is loaded or saved" in err
+    assert "nothing kept: there is no profile store" in out
+
+
+def test_a_drive_that_is_given_up_still_leaves_its_recording(drive: Run) -> None:
+    status, out, err = drive(
+        "--driver", "none", "--set", "body.power_max_w=1", "--set", "grade_from_route=false",
+        "--set", "grade_constant=0.1", "--out", "up.csv",
+    )  # fmt: skip
+    assert status == 1
+    assert "pldf: the drive was given up: the vehicle stood still for 60 s at " in err
+    assert len(read_recording("up.csv")) > 100
+    assert "rates" in out
+
+
+def sample(shift: float = 0.0) -> Recording:
+    """Return 100 s with gas from 20 s, brake from 50 s, and an offset from 60 s."""
+    time = np.arange(0.0, 100.0, 0.1)
+    mode = np.full(len(time), 2.0)
+    mode[200:300] = 3.0
+    mode[500:600] = 1.0
+    brake = np.zeros(len(time))
+    brake[500:550] = 0.4
+    gas = np.where(mode == 3.0, 0.5, 0.0)
+    limit = np.full(len(time), 25.0)
+    columns = {
+        "time_s": time,
+        "s_m": 20.0 * time,
+        "speed_mps": 20.0 + shift + np.sin(time / 5.0),
+        "acceleration_mps2": np.cos(time / 5.0) / 5.0,
+        "mode": mode,
+        "gas_pedal": gas,
+        "brake_pedal": brake,
+        "set_speed_mps": limit,
+        "set_speed_offset_mps": np.where(time >= 60.0, 2.0, 0.0),
+        "profile_mps": np.full(len(time), 22.0 + shift),
+        "base_mps": np.full(len(time), 22.0),
+        "limit_mps": limit,
+        "eligible": np.ones(len(time)),
+    }
+    return Recording(columns)
+
+
+def test_a_picture_of_one_recording(run: Run) -> None:
+    write_recording("a.csv", sample())
+    assert run("plot", "a.csv") == (0, "picture  a.png\n", "")
+    for kind in ("png", "svg", "pdf"):
+        for folder in ("one", "two"):
+            assert run("plot", "a.csv", "--out", f"{folder}/a.{kind}")[0] == 0
+        assert Path(f"one/a.{kind}").read_bytes() == Path(f"two/a.{kind}").read_bytes()
+    assert matplotlib.image.imread("a.png").shape[1] == 1650
+
+
+def test_interventions_are_shaded_where_they_are() -> None:
+    figure = figure_of({"a": sample(1.0)}, "title")
+    speed, pedals = figure.axes
+    spans = sorted(
+        (round(p.get_x() / KM), round((p.get_x() + p.get_width()) / KM)) for p in speed.patches
+    )
+    assert spans == [(400, 600), (1000, 1200), (1200, 1998)]  # gas, brake, set speed
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == [
+        "Legal limit", "Base profile", "Learned profile, followed", "Speed driven",
+        "Gas pedal", "Brake until reactivated", "Set speed changed",
+    ]  # fmt: skip
+    low, high = speed.get_ylim()
+    assert low < 19.0 * 3.6 < 25.0 * 3.6 < high
+    assert pedals.get_ylabel() == "Pedals\nbrake | gas"
+
+
+def test_a_base_drive_shows_no_learned_profile() -> None:
+    figure = figure_of({"a": sample()}, "title")
+    axis = figure.axes[0]
+    axis.clear()
+    draw_drive(axis, sample())
+    assert "Learned profile, followed" not in axis.get_legend_handles_labels()[1]
+
+
+def test_several_recordings_are_compared(run: Run) -> None:
+    write_recording("a.csv", sample())
+    write_recording("b.csv", sample(1.0))
+    assert run("plot", "a.csv", "b.csv", "--out", "both.png") == (0, "picture  both.png\n", "")
+    figure = figure_of({"a": sample(), "b": sample(1.0)}, "title")
+    assert [text.get_text() for text in figure.axes[1].get_yticklabels()] == ["a", "b"]
+    assert len(figure.axes) == 3
+
+
+def test_a_laboratory_recording_needs_the_route(run: Run) -> None:
+    whole = sample().columns
+    Path("road.csv").write_text(ROAD.replace("400,", "2500,"))
+    few = Recording({name: whole[name] for name in ("time_s", "s_m", "speed_mps", "mode")})
+    write_recording("few.csv", few)
+    status, _, err = run("plot", "few.csv")
+    assert status == 1
+    assert "few.csv: no column limit_mps, base_mps, profile_mps" in err
+    assert "--route" in err
+    assert run("plot", "few.csv", "--route", "road.csv")[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status"),
+    [
+        (["nowhere.csv"], 1),
+        (["a.csv", "--profile", "nowhere.pldf"], 1),
+        (["a.csv", "--out", "a.xyz"], 1),
+        (["a.csv"] * 8, 2),
+        ([], 2),
+    ],
+)
+def test_plot_refuses(run: Run, arguments: list[str], status: int) -> None:
+    write_recording("a.csv", sample())
+    found, out, err = run("plot", *arguments)
+    assert (found, out) == (status, "")
+    assert "Traceback" not in err
+    assert len(err.splitlines()) <= (2 if status == 1 else 8)
+
+
+def test_recordings_of_one_name_are_told_apart() -> None:
+    paths = [Path("x/B1.csv"), Path("y/B1.csv")]
+    assert names_of(paths) == ["x/B1", "y/B1"]
+    assert names_of([Path("B1.csv"), Path("B2.csv")]) == ["B1", "B2"]
+    assert names_of([Path("B1.csv"), Path("B1.csv")]) == ["B1", "B1 (2)"]

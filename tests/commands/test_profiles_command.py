@@ -1,0 +1,255 @@
+"""``pldf profiles``: what it prints and writes, and how it fails."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import matplotlib.image
+import numpy as np
+import pytest
+from pldf import cli
+from pldf.profiles.profile_file import encode
+from pldf.profiles.store import ProfileStore, StoredProfile, read_profile, write_profile
+from profile_examples import DRIVER, ROUTE, drive_result, new_profile
+
+Run = Callable[..., tuple[int, str, str]]
+NAME = f"driver-000017_route-{ROUTE}.pldf"
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Run:
+    """Return a function that runs ``pldf profiles`` in a folder with the store ``store``."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("PLDF_PROFILE_STORE", raising=False)
+    monkeypatch.setattr(cli, "COMMANDS", ("profiles",))  # the other commands have their own tests
+    store = ProfileStore("store")
+    profile = example()
+    for iteration in profile.iterations:
+        loaded = replace(profile, iterations=profile.iterations[: iteration.number - 1])
+        store.append(loaded, iteration)
+
+    def runner(*arguments: str) -> tuple[int, str, str]:
+        try:
+            status = cli.main(["profiles", *arguments])
+        except SystemExit as stop:
+            status = int(stop.code or 0)
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return runner
+
+
+def example() -> StoredProfile:
+    """Return 1001 nodes: 36 km/h more from 100 m to 199 m, then -7.2 km/h from 500 m to 509 m."""
+    profile = replace(new_profile(), base_mps=np.full(1001, 20.0))
+    first = drive_result(profile, "B1")
+    learned = profile.base_mps.copy()
+    learned[100:200] += 10.0
+    first = replace(first, learned_mps=learned, offset_mps=np.zeros(1001), interventions=3)
+    learned = learned.copy()
+    learned[500:510] -= 2.0
+    offset = np.zeros(1001)
+    offset[700:] = 5.0 / 3.6
+    second = replace(first, number=2, note="B2", learned_mps=learned, offset_mps=offset)
+    return replace(profile, iterations=(first, replace(second, interventions=1)))
+
+
+def columns(line: str) -> list[str]:
+    return line.split()
+
+
+def test_list(run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    other = new_profile(driver_id=2, route="f" * 16)
+    ProfileStore("store").append(other, drive_result(other))
+    status, out, err = run("list", "--store", "store")
+    assert (status, err) == (0, "")
+    assert [columns(line) for line in out.splitlines()] == [
+        ["driver", "route", "length", "m", "iterations", "file"],
+        [
+            "2",
+            "f" * 16,
+            "10",
+            "1",
+            str(tmp_path / "store" / f"driver-000002_route-{'f' * 16}.pldf"),
+        ],
+        ["17", ROUTE, "1000", "2", str(tmp_path / "store" / NAME)],
+    ]
+    monkeypatch.setenv("PLDF_PROFILE_STORE", "store")
+    assert run("list") == (0, out, "")
+
+
+def test_list_tells_what_cannot_be_used_and_touches_nothing(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "store" / "a.pldf").write_bytes(b"bad")
+    (tmp_path / "store" / "b.pldf.refused-1").write_bytes(b"worse")
+    status, out, err = run("list", "--store", "store")
+    assert status == 0
+    assert len(out.splitlines()) == 2
+    bad, worse = err.splitlines()
+    assert "a.pldf, line 1: not a profile file" in bad
+    assert "b.pldf.refused-1: put aside because it could not be used" in worse
+    assert (tmp_path / "store" / "a.pldf").read_bytes() == b"bad"
+
+
+def test_show_newest_and_older_state(run: Run) -> None:
+    status, out, err = run("show", f"store/{NAME}")
+    assert (status, err) == (0, "")
+    assert [columns(line) for line in out.splitlines()] == [
+        ["driver", "17"],
+        ["route", f"{ROUTE},", "1000", "m"],
+        ["iteration", "2", "of", "2:", "B2"],
+        ["learned", "minus", "base", "speed:"],
+        ["from", "m", "to", "m", "mean", "km/h", "peak", "km/h"],
+        ["100", "199", "+36.0", "+36.0"],
+        ["500", "509", "-7.2", "-7.2"],
+        ["learned", "offset", "of", "the", "set", "speed:"],
+        ["from", "m", "to", "m", "mean", "km/h", "peak", "km/h"],
+        ["700", "1000", "+5.0", "+5.0"],
+    ]
+    _, out, _ = run("show", f"store/{NAME}", "--iteration", "0")
+    assert out.splitlines()[2:] == [
+        "iteration  0 of 2: base",
+        "learned minus base speed: none",
+        "learned offset of the set speed: none",
+    ]
+
+
+def test_show_plot(run: Run) -> None:
+    status, out, _ = run("show", f"store/{NAME}", "--plot", "p.png")
+    assert status == 0
+    assert out.endswith("plot       p.png\n")
+    image = matplotlib.image.imread("p.png")[:, :, :3]
+    assert (image.reshape(-1, 3).std(axis=1) > 0.1).mean() > 0.001  # coloured curves
+    status, _, err = run("show", f"store/{NAME}", "--plot", "p.unknown")
+    assert status == 1
+    assert err.startswith("pldf: p.unknown: cannot be written")
+
+
+def test_history(run: Run) -> None:
+    status, out, err = run("history", f"store/{NAME}")
+    assert (status, err) == (0, "")
+    first, second = (columns(line) for line in out.splitlines()[2:])
+    assert first == ["1", "3", "100", f"{36 * 100 / 1001:.2f}", "36.00", "B1"]
+    assert second == ["2", "1", "10", f"{7.2 * 10 / 1001:.2f}", "7.20", "B2"]
+
+
+def test_export_is_exact_csv(run: Run, tmp_path: Path) -> None:
+    status, out, err = run("export", f"store/{NAME}")
+    assert (status, err) == (0, "")
+    lines = out.splitlines()
+    assert lines[0] == "s_m,base_mps,learned_mps,offset_mps"
+    assert lines[1] == "0.0,20.0,20.0,0.0"
+    assert lines[701] == "700.0,20.0,20.0,1.3888888888888888"
+    table = np.array([[float(text) for text in line.split(",")] for line in lines[1:]])
+    newest = example().iterations[-1]
+    expected = (np.arange(1001.0), example().base_mps, newest.learned_mps, newest.offset_mps)
+    assert np.array_equal(table, np.column_stack(expected))
+
+    assert run("export", f"store/{NAME}", "--out", "out.csv") == (0, "", "")
+    assert (tmp_path / "out.csv").read_bytes() == out.encode()
+
+    _, older, _ = run("export", f"store/{NAME}", "--iteration", "1")
+    assert older.splitlines()[502] == "501.0,20.0,20.0,0.0"
+    assert lines[502] == "501.0,20.0,18.0,0.0"
+
+
+def test_export_into_a_pipe_that_closes_early_is_no_error(tmp_path: Path) -> None:
+    profile = replace(new_profile(), base_mps=np.full(20_000, 20.0))
+    write_profile(tmp_path / "p.pldf", profile)
+    code = "import sys; from pldf import cli; cli.COMMANDS = ('profiles',); sys.exit(cli.main())"
+    with subprocess.Popen(
+        [sys.executable, "-c", code, "profiles", "export", str(tmp_path / "p.pldf")],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.readline()
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == 0
+
+
+def test_rollback_adds_an_iteration(run: Run) -> None:
+    status, out, err = run("rollback", "17", "--store", "store", "--to", "1")
+    assert (status, err) == (0, "")
+    assert out.endswith(f"{NAME}: iteration 3 is now a copy of iteration 1\n")
+    profile = read_profile(f"store/{NAME}")
+    assert encode(replace(profile, iterations=profile.iterations[:2])) == encode(example())
+    assert profile.iteration().note == "rollback of 1"
+    assert run("rollback", f"store/{NAME}", "--to", "0")[0] == 0
+    assert np.array_equal(read_profile(f"store/{NAME}").iteration().learned_mps, profile.base_mps)
+
+
+@pytest.mark.parametrize("action", ["show", "history", "export"])
+def test_driver_number_stands_for_the_file(run: Run, action: str) -> None:
+    assert run(action, "17", "--store", "store") == run(action, f"store/{NAME}")
+
+
+def test_driver_with_two_routes_must_be_named_by_file(run: Run) -> None:
+    other = new_profile(driver_id=DRIVER, route="f" * 16)
+    ProfileStore("store").append(other, drive_result(other))
+    status, out, err = run("show", "17", "--store", "store")
+    assert (status, out) == (1, "")
+    assert err.startswith("pldf: driver 17 has 2 profiles, name one: ")
+    assert NAME in err
+
+
+ERRORS = [
+    (1, "nothing.pldf: no such profile file", ("show", "nothing.pldf")),
+    (1, "bad.pldf, line 1: not a profile file", ("history", "bad.pldf")),
+    (1, "bad.pldf, line 1: not a profile file", ("rollback", "bad.pldf", "--to", "0")),
+    (
+        1,
+        "there is no iteration 9; this profile has 0 (base) to 2",
+        ("show", "17", "--iteration", "9"),
+    ),
+    (1, "there is no iteration 9;", ("rollback", "17", "--to", "9")),
+    (1, "there is no iteration -1;", ("rollback", "17", "--to", "-1")),
+    (1, "no profile of driver 18", ("export", "18")),
+    (1, "none/x.csv: cannot be written", ("export", "17", "--out", "none/x.csv")),
+    (1, "elsewhere: no such folder", ("list", "--store", "elsewhere")),
+    (2, "required: --to", ("rollback", "17")),
+    (2, "invalid int value", ("export", "17", "--iteration", "two")),
+    (2, "required: FILE", ("show",)),
+    (2, "required: ACTION", ()),
+    (2, "invalid choice", ("delete",)),
+]
+
+
+@pytest.mark.parametrize(("expected", "text", "arguments"), ERRORS)
+def test_errors(
+    run: Run,
+    monkeypatch: pytest.MonkeyPatch,
+    expected: int,
+    text: str,
+    arguments: tuple[str, ...],
+) -> None:
+    monkeypatch.setenv("PLDF_PROFILE_STORE", "store")
+    Path("bad.pldf").write_bytes(b"bad")
+    status, out, err = run(*arguments)
+    assert (status, out) == (expected, "")
+    assert text in err
+    if expected == 1:
+        assert err.startswith("pldf: ")
+        assert len(err.splitlines()) == 1
+    assert Path("bad.pldf").read_bytes() == b"bad"
+    assert not Path("elsewhere").exists()
+
+
+@pytest.mark.parametrize("arguments", [("list",), ("show", "17")])
+def test_no_store_at_all_is_wrong_usage(run: Run, arguments: tuple[str, ...]) -> None:
+    status, out, err = run(*arguments)
+    assert (status, out) == (2, "")
+    assert "give --store FOLDER, or set PLDF_PROFILE_STORE" in err
+
+
+@pytest.mark.parametrize("action", ["list", "show", "history", "export", "rollback"])
+def test_help_shows_an_example(run: Run, action: str) -> None:
+    status, out, _ = run(action, "--help")
+    assert status == 0
+    assert f"example:\n  pldf profiles {action} " in out
+    assert f"pldf profiles {action} " in run("--help")[1]

@@ -1,0 +1,105 @@
+"""The scripts in studies/: the fit sees system A only, and the tables say what was measured."""
+
+from __future__ import annotations
+
+import ast
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pldf.analysis.published import PUBLISHED
+from pldf.study.participants import Row
+from pldf.study.population import Distribution, read_distribution, sample_participants
+
+from studies import fit_population, long_run, predict_study
+
+STUDIES = Path(fit_population.__file__).parent
+FIT_INPUTS = ("fit_population.py", "population.toml")
+
+
+def population() -> dict[str, dict]:
+    return tomllib.loads((STUDIES / "population.toml").read_text())
+
+
+@pytest.mark.parametrize("name", FIT_INPUTS)
+def test_the_fit_contains_nothing_of_system_b(name: str) -> None:
+    text = (STUDIES / name).read_text()
+    numbers = [share for rate in PUBLISHED["B"] for share in (f"{100 * rate:.2f}", f"{rate:.4f}")]
+    assert not [n for n in (*numbers, "PUBLISHED", "published", '"B') if n in text]
+    assert f"{100 * PUBLISHED['A'].pedal:.2f}" in text  # the search would find such a number
+
+
+def test_the_fit_imports_neither_results_of_the_paper_nor_other_drives() -> None:
+    tree = ast.parse((STUDIES / "fit_population.py").read_text())
+    imported = [
+        (node.module, name.name)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for name in node.names
+    ]
+    assert ("pldf.study.phases", "PHASES") in imported
+    assert not [what for what in imported if "published" in " ".join(map(str, what)).lower()]
+    job = fit_population.Fit(people=1, jobs=1).job
+    assert [phase.name for phase in job.settings.phases] == ["A1", "A2"]
+    assert not any(phase.apply_learned for phase in job.settings.phases)
+
+
+def test_fitted_numbers_are_those_of_the_paper_study_and_reach_the_targets() -> None:
+    found = population()
+    paper = tomllib.loads((STUDIES / "paper.toml").read_text())
+    assert read_distribution(paper["distribution"]) == read_distribution(found["distribution"])
+    fit = found["fit"]
+    assert fit["targets_percent"] == pytest.approx([100 * rate for rate in PUBLISHED["A"]])
+    assert fit["reached_percent"] == pytest.approx(fit["targets_percent"], abs=0.7)
+    factors = next(np.array(f) for f, rates in fit["tried"] if rates == fit["reached_percent"])
+    expected = fit_population.fitted(factors).as_table()
+    for name, law in found["distribution"].items():
+        assert law.pop("law") == expected[name].pop("law")
+        assert law == pytest.approx(expected[name], rel=1e-4)
+
+
+def test_the_fit_starts_from_the_starting_values_and_repeats() -> None:
+    assert fit_population.fitted(fit_population.START) == Distribution()
+    fit = fit_population.Fit(people=2, jobs=1)
+    first, second = fit.rates(fit_population.START), fit.rates(fit_population.START)
+    np.testing.assert_array_equal(first, second)
+    assert first[2] <= first[0] + first[1] + 1e-9  # a union is no more than its parts
+    assert first[2] > 10.0
+
+
+def test_tables_show_means_tests_and_drives() -> None:
+    rates = np.zeros((3, 43, 4, 3))
+    rates[..., :2, :] = np.linspace(20.0, 40.0, 43)[:, None, None]
+    rates[..., 2:, :] = 10.0 + np.linspace(0.0, 1.0, 43)[::-1, None, None]
+    text = predict_study.tables(rates)
+    assert "| pedal | 22.32 | 30.00 [30.00, 30.00] | 12.04 | 10.50 [10.50, 10.50] |" in text
+    assert "| combined | W = 1 | 0.00 [0.00, 0.00] |" in text
+    assert "| set speed, drivers who fell | | 43 [43, 43] |" in text
+
+
+def test_studies_have_different_people_with_numbers_of_their_own() -> None:
+    first, second = (predict_study.study_people(k, Distribution()) for k in (0, 1))
+    assert first[0].values == sample_participants(1, 1)[0].values
+    assert len({person.number for person in (*first, *second)}) == 86
+    assert first[0].values != second[0].values
+
+
+def test_long_run_summary() -> None:
+    rows = [Row(f"P{k}", "B2", "B", 2, 200.0, 0.1 * k, 0.0, 0.1 * k, k, 1.0) for k in range(3)]
+    found = long_run.summary(0.5, 2, rows)
+    assert found["combined_percent"] == pytest.approx(10.0)
+    assert found["content_percent"] == pytest.approx(100.0 / 3.0)
+    assert found["wish_error_kmh"] == pytest.approx(3.6)
+
+
+def test_long_run_drives_learns_and_draws(tmp_path: Path) -> None:
+    people = sample_participants(2, 1)
+    summaries = long_run.long_run(people, 0.5, drives=3, jobs=1)
+    errors = [row["wish_error_kmh"] for row in summaries]
+    assert errors[2] < errors[1] < errors[0]
+    long_run.write(summaries, tmp_path)
+    header, *lines = (tmp_path / "long_run.csv").read_text().splitlines()
+    assert header.startswith("stretch_factor,drive,people")
+    assert len(lines) == 3
+    assert (tmp_path / "long_run.png").stat().st_size > 10_000

@@ -1,0 +1,37 @@
+"""Profiles for the tests of file format, store and command."""
+
+from __future__ import annotations
+
+import numpy as np
+from pldf.profiles.store import Iteration, StoredProfile
+
+ROUTE = "0123456789abcdef"
+DRIVER = 17
+
+
+def new_profile(nodes: int = 11, driver_id: int = DRIVER, route: str = ROUTE) -> StoredProfile:
+    """Return a profile before the first drive."""
+    return StoredProfile(driver_id, route, np.linspace(20.0, 25.0, nodes))
+
+
+def drive_result(profile: StoredProfile, note: str = "learned", seed: int = 0) -> Iteration:
+    """Return what one more drive has learned: arbitrary, but the same for the same seed."""
+    random = np.random.default_rng(seed)
+    number = len(profile.iterations) + 1
+    return Iteration(
+        number,
+        note,
+        number % 4,
+        profile.base_mps + random.uniform(-3.0, 3.0, profile.nodes),
+        random.choice((-5.0 / 3.6, 0.0, 0.1), profile.nodes),
+        random.integers(0, number + 1, profile.nodes).astype(float),
+        random.integers(0, 9, profile.nodes).astype(float),
+    )
+
+
+def learned_profile(iterations: int = 2, nodes: int = 11) -> StoredProfile:
+    """Return a profile after some drives."""
+    profile = new_profile(nodes)
+    for seed in range(iterations):
+        profile = profile.with_iteration(drive_result(profile, f"drive {seed + 1}", seed))
+    return profile
