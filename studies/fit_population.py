@@ -20,16 +20,15 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 from pldf.files.disk import replace_file
+from pldf.kernel.arrays import FloatArray
+from pldf.kernel.units import MPS_PER_KMH
 from pldf.study.participants import StudySettings
 from pldf.study.phases import PHASES, choose_route
-from pldf.study.population import KMH, Distribution, Lognormal, Normal, sample_participants
+from pldf.study.population import Distribution, Lognormal, Normal, sample_participants
 from pldf.study.runner import in_processes
 from pldf.study.unit import Job
 from scipy.optimize import least_squares
-
-Floats = NDArray[np.float64]
 
 # Mean rates with the base function in percent, from the paper: pedal, set speed, combined.
 TARGETS: Final = np.array([22.32, 39.76, 54.68])
@@ -50,13 +49,15 @@ EVALUATIONS_MAX: Final = 5
 CLOSE_ENOUGH: Final = 0.01  # relative change of the factors that ends the fit
 
 
-def fitted(factors: Floats) -> Distribution:
+def fitted(factors: FloatArray) -> Distribution:
     """Return the starting distribution with the laws of ``FACTORS`` scaled."""
     threshold, offset, patience, strength = (float(factor) for factor in factors)
     return Distribution().with_laws(
         {
-            "driver_threshold_mps": Lognormal(threshold * 5.0 * KMH, 0.3, low=0.5 * KMH),
-            "wish_offset_mps": Normal(offset * 7.0 * KMH, 5.0 * KMH),
+            "driver_threshold_mps": Lognormal(
+                threshold * 5.0 * MPS_PER_KMH, 0.3, low=0.5 * MPS_PER_KMH
+            ),
+            "wish_offset_mps": Normal(offset * 7.0 * MPS_PER_KMH, 5.0 * MPS_PER_KMH),
             "driver_lever_settled_s": Lognormal(patience * 3.0, 0.3, low=0.3, high=20.0),
             "wish_accel_max_mps2": Lognormal(strength * 1.5, 0.2, low=0.5, high=3.0),
             "wish_accel_min_mps2": Lognormal(strength * -1.3, 0.2, low=-3.0, high=-0.5),
@@ -70,7 +71,7 @@ class Fit:
 
     people: int
     jobs: int
-    log: list[tuple[Floats, Floats]] = field(default_factory=list)
+    log: list[tuple[FloatArray, FloatArray]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         """Choose road and drives."""
@@ -79,7 +80,7 @@ class Fit:
         self.reached = TARGETS
         self.job = Job(StudySettings(route=route, road=road, phases=phases))
 
-    def rates(self, factors: Floats) -> Floats:
+    def rates(self, factors: FloatArray) -> FloatArray:
         """Return the mean pedal, set-speed and combined rates in percent."""
         people = sample_participants(self.people, SEED, fitted(factors))
         found = {
@@ -95,7 +96,7 @@ class Fit:
         )
         return means
 
-    def run(self) -> Floats:
+    def run(self) -> FloatArray:
         """Return the factors that the fit ends with, to four decimals."""
         found = least_squares(
             lambda factors: np.append(self.rates(factors) - TARGETS, PULL * np.log(factors)),
@@ -106,11 +107,11 @@ class Fit:
         return np.round(found.x, 4)
 
 
-def _numbers(values: Floats) -> str:
+def _numbers(values: FloatArray) -> str:
     return "[" + ", ".join(f"{value:.4f}" for value in values) + "]"
 
 
-def as_toml(fit: Fit, factors: Floats) -> str:
+def as_toml(fit: Fit, factors: FloatArray) -> str:
     """Return the distribution in the form of a study file, with the record of the fit."""
     lines = [
         "# Drivers fitted to system A by studies/fit_population.py; nothing else was looked at.",

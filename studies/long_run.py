@@ -20,6 +20,7 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 from pldf.analysis.statistics import mean_interval
+from pldf.kernel.units import KMH_PER_MPS
 from pldf.report.figures import BLUE, GREEN, ORANGE, VERMILLION
 from pldf.study.participants import Participant, Row, StudySettings
 from pldf.study.phases import PHASES, choose_route
@@ -30,7 +31,6 @@ from pldf.study.unit import Job
 Summary = dict[str, float]
 
 STRETCH: Final = (0.0, 0.25, 0.5, 1.0)
-KMH: Final = 3.6
 STYLES: Final = ((VERMILLION, "-", "o"), (ORANGE, "--", "s"), (BLUE, "-", "^"), (GREEN, ":", "D"))
 COLUMNS: Final = {
     "combined_percent": "Combined rate (%)",
@@ -59,7 +59,7 @@ def long_run(
 def summary(stretch: float, drive: int, rows: Sequence[Row]) -> Summary:
     """Return means over people; errors have 95 % confidence intervals of the mean."""
     combined = mean_interval([100.0 * row.combined_rate for row in rows])
-    error = mean_interval([KMH * row.wish_error_mps for row in rows])
+    error = mean_interval([KMH_PER_MPS * row.wish_error_mps for row in rows])
     return {
         "stretch_factor": stretch,
         "drive": drive,

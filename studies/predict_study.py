@@ -19,22 +19,20 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 from pldf.analysis.published import DRIVERS, TESTS, published_means
 from pldf.analysis.statistics import Comparison, compare
+from pldf.kernel.arrays import FloatArray
 from pldf.study.participants import Participant, StudySettings
 from pldf.study.phases import PHASES, choose_route
 from pldf.study.population import Distribution, read_distribution, sample_participants
 from pldf.study.runner import in_processes
 from pldf.study.unit import Job
 
-Floats = NDArray[np.float64]
-
 MEASURES: Final = {"pedal": "pedal", "set_speed": "set speed", "combined": "combined"}
 COMPARED: Final = {"A": ("A1", "A2"), "B": ("B1", "B2")}
 
 
-def drive_studies(distribution: Distribution, studies: int, jobs: int) -> Floats:
+def drive_studies(distribution: Distribution, studies: int, jobs: int) -> FloatArray:
     """Return rates[study, person, drive, measure] in percent; drives are A1, A2, B1, B2."""
     route, road = choose_route("study")
     settings = StudySettings(route=route, road=road, phases=tuple(PHASES.values()))
@@ -58,7 +56,7 @@ def study_people(seed: int, distribution: Distribution) -> list[Participant]:
     return [replace(one, id=f"P{seed * DRIVERS + one.number:05d}") for one in people]
 
 
-def tables(rates: Floats) -> str:
+def tables(rates: FloatArray) -> str:
     """Return means, tests and drives as Markdown."""
     per_person = rates.reshape(*rates.shape[:2], 2, 2, -1).mean(axis=3)  # study, person, system
     lines = [
@@ -102,7 +100,7 @@ def _test_rows(measure: str, name: str, compared: Sequence[Comparison]) -> list[
     ]
 
 
-def _range(values: Floats) -> str:
+def _range(values: FloatArray) -> str:
     low, high = np.quantile(values, [0.025, 0.975])
     return f"{values.mean():.2f} [{low:.2f}, {high:.2f}]"
 

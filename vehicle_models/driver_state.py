@@ -20,8 +20,7 @@ from pldf.kernel.signals import (
     real_parameter,
     text_parameter,
 )
-
-KMH = 1.0 / 3.6
+from pldf.kernel.units import MPS_PER_KMH
 
 HANDS_OFF: Final = 0
 SCRIPT: Final = 1
@@ -63,7 +62,7 @@ class WishParameters:
     )
     wish_offset_mps: float = real_parameter(
         "Wished speed above the legal limit where nothing else binds",
-        "m/s", start=7.0 * KMH, low=-20.0, high=30.0,
+        "m/s", start=7.0 * MPS_PER_KMH, low=-20.0, high=30.0,
     )  # fmt: skip
     wish_lateral_accel_max_mps2: float = real_parameter(
         "Lateral acceleration accepted in curves", "m/s2", start=2.9, low=0.1, high=10.0
@@ -88,7 +87,7 @@ class DriverParameters(WishParameters):
 
     driver_threshold_mps: float = real_parameter(
         "Deviation from the wish below which nothing is done",
-        "m/s", start=5.0 * KMH, low=0.0, high=30.0,
+        "m/s", start=5.0 * MPS_PER_KMH, low=0.0, high=30.0,
     )  # fmt: skip
     driver_reaction_s: float = real_parameter(
         "Time for which a deviation lasts before a pedal is pressed",
@@ -109,7 +108,7 @@ class DriverParameters(WishParameters):
     driver_uses_lever: int = flag_parameter("Sets the speed by the lever in cruise", start=True)
     driver_lever_step_mps: float = real_parameter(
         "Set-speed change that one long tip is known to make",
-        "m/s", start=5.0 * KMH, low=0.1, high=20.0,
+        "m/s", start=5.0 * MPS_PER_KMH, low=0.1, high=20.0,
     )  # fmt: skip
     driver_lever_settled_s: float = real_parameter(
         "Time of steady cruise before the lever is used", "s", start=3.0, low=0.0, high=60.0

@@ -17,6 +17,7 @@ from pldf.kernel.signals import (
     real_parameter,
     text_parameter,
 )
+from pldf.kernel.units import KMH_PER_MPS
 
 
 @dataclass(slots=True)
@@ -41,7 +42,7 @@ class VehicleParameters:
         "Position at the start", "m", start=0.0, low=-1e7, high=1e7, name="start_s_m"
     )
     start_speed_mps: float = real_parameter(
-        "Speed at the start", "m/s", start=80.0 / 3.6, low=0.0, high=80.0
+        "Speed at the start", "m/s", start=80.0 / KMH_PER_MPS, low=0.0, high=80.0
     )
     body_mass_kg: float = real_parameter(
         "Mass with its load", "kg", start=1812.0, low=100.0, high=60_000.0
@@ -68,7 +69,7 @@ class VehicleParameters:
         "Largest drive power at the wheels", "W", start=141_100.0, low=1.0, high=1e7
     )
     body_speed_max_mps: float = real_parameter(
-        "Speed at which the drive is cut off", "m/s", start=160.0 / 3.6, low=1.0, high=150.0
+        "Speed at which the drive is cut off", "m/s", start=160.0 / KMH_PER_MPS, low=1.0, high=150.0
     )
     body_brake_max_mps2: float = real_parameter(
         "Deceleration by the brakes at full pedal", "m/s2", start=9.81, low=0.5, high=20.0

@@ -15,12 +15,11 @@ from math import inf
 from typing import Any, Generic, Literal, TypeVar, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .kernel.arrays import Floats
+from .kernel.arrays import FloatArray, Floats
 from .kernel.signals import Signal, signals_of
 
-Arrays = tuple[NDArray[np.float64], ...]
+Arrays = tuple[FloatArray, ...]
 Level = Literal["info", "warning", "error"]
 RecordT = TypeVar("RecordT")
 TupleT = TypeVar("TupleT", bound=tuple[Any, ...])
@@ -133,7 +132,7 @@ class Instance(Generic[RecordT]):
         return hashlib.sha256(text.encode()).digest()
 
 
-def view(array: NDArray[np.float64]) -> Floats:
+def view(array: FloatArray) -> Floats:
     """Return a memoryview of ``array``, the form in which CPython runs the kernels."""
     return cast(Floats, memoryview(cast(Any, array)))
 

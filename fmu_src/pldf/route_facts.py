@@ -6,18 +6,16 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .instance import view, views, zeros
-from .kernel.arrays import RouteArrays, Work
+from .kernel.arrays import FloatArray, RouteArrays, Work
 from .kernel.parameters import PlannerParameters
 from .kernel.planner import plan_profile, speed_caps
+from .kernel.units import KMH_PER_MPS
 from .roads import Route, route_arrays
 
-FloatArray = NDArray[np.float64]
-
 # A curve is felt when it asks for clearly less than the sign.
-BINDING_MPS: Final = 5.0 / 3.6
+BINDING_MPS: Final = 5.0 / KMH_PER_MPS
 
 
 @dataclass(frozen=True)

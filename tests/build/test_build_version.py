@@ -13,9 +13,8 @@ from xml.etree.ElementTree import fromstring
 
 import pytest
 from pldf import __version__
-from pldf.build_version import build_version
-
 from pldf.build import fmus as fmu_build
+from pldf.build_version import build_version
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = {"pldf": "fmu_src/pldf", "vehicle_models": "vehicle_models"}

@@ -10,11 +10,10 @@ import pytest
 from fmi_host import Host
 from fmpy import platform
 from fmpy.validation import validate_fmu
-from pldf.build.builder import build
-from pushed_cart import EXAMPLE, cart_recipe, recipe_with
-
 from pldf import cli
 from pldf.build import fmus as fmu_build
+from pldf.build.builder import build
+from pushed_cart import EXAMPLE, cart_recipe, recipe_with
 
 
 @pytest.mark.parametrize("name", fmu_build.FMUS)

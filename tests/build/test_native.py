@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 from fmi_host import Host
-from pldf.roads import packed_route
 from pldf.cosim.fmu import Fmu
 from pldf.cosim.master import drive
-from pldf.study.phases import PHASES, Setting, values_of
 from pldf.recordings.recording import write_recording
+from pldf.roads import packed_route
+from pldf.study.phases import PHASES, Setting, values_of
 
 pytest.importorskip("ziglang", reason="needs the extra: pip install -e .[native]")
 if sys.platform != "linux":

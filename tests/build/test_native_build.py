@@ -11,9 +11,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-
 from pldf import cli
-from pldf.build import fmus as fmu_build
 
 pytest.importorskip("lief", reason="needs the extra: pip install -e .[native]")
 

@@ -10,9 +10,8 @@ from xml.etree.ElementTree import Element, fromstring
 
 import pytest
 from fmpy.validation import validate_fmu
-from pldf.build_version import build_version
-
 from pldf.build import fmus as fmu_build
+from pldf.build_version import build_version
 
 TYPES = {"Float64": "Real", "Int32": "Integer"}  # the others have the same name
 

@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 from native_drives import CASES, by_source
 from native_hosts import HEADERS, MODELS, PLATFORMS, WARNINGS, Hosts, Value, host_sources, missing
-
 from pldf.build import fmus as fmu_build
 
 pytest.importorskip("ziglang", reason="needs the extra: pip install -e .[native]")

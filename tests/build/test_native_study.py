@@ -9,12 +9,12 @@ import pytest
 from laboratory import files
 from pldf import cli
 from pldf.build_version import build_version
-from pldf.instance import ModelError
-from pldf.cosim.prepared import write_prepared_route, write_prepared_script
-from pldf.roads import fingerprint, packed_route, read_route
-from pldf.profiles.store import ProfileStore
 from pldf.cosim.fmu import Fmu, Slave
 from pldf.cosim.master import unpacked
+from pldf.cosim.prepared import write_prepared_route, write_prepared_script
+from pldf.instance import ModelError
+from pldf.profiles.store import ProfileStore
+from pldf.roads import fingerprint, packed_route, read_route
 from pldf.study.phases import PHASES, Setting, choose_route
 from pldf.study.run import run_study
 

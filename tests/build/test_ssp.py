@@ -13,15 +13,13 @@ from fmpy import read_model_description
 from fmpy.ssp.ssd import read_ssd
 from lxml import etree
 from pldf.build import ssp
-from pldf.instance import ModelError
-from pldf.kernel.codes import MODE
+from pldf.build.packages import sources, start_values, write_packages
 from pldf.cosim.fmu import Fmu
 from pldf.cosim.master import PARTS, connections, unpacked
-from pldf.build.packages import sources, start_values, write_packages
+from pldf.instance import ModelError
+from pldf.kernel.codes import MODE
 from pldf.study.phases import PHASES
 from pyssp_standard.ssp import SSP
-
-from pldf.build import fmus as fmu_build
 
 IN_REPOSITORY = Path(__file__).parents[2] / "ssp"
 NS = {

@@ -16,11 +16,11 @@ import numpy as np
 import pytest
 from fmi_host import Host
 from numpy.typing import NDArray
-from pldf.roads import fingerprint, packed_route
-from pldf.profiles.store import ProfileStore, StoredProfile
+from pldf.build.packages import start_values
 from pldf.cosim.fmu import Fmu
 from pldf.cosim.master import Course, drive
-from pldf.build.packages import start_values
+from pldf.profiles.store import ProfileStore, StoredProfile
+from pldf.roads import fingerprint, packed_route
 from pldf.study.phases import PHASES
 from ssp_masters import STEP_S
 

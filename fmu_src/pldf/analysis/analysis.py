@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..function import DrivingFunction
 from ..instance import ModelError
+from ..kernel.arrays import FloatArray
 from ..recordings.interventions import Rates
 from ..recordings.recording import Recording, completed, read_recording
 from ..roads import Route
@@ -25,8 +25,6 @@ from ..study.phases import PHASES, Phase
 from .drives_table import DriveRow, check_complete, check_phase, read_drives, row_of
 from .questionnaire import Questionnaire, read_questionnaire
 from .statistics import Comparison, Interval, compare, mean_interval
-
-Floats = NDArray[np.float64]
 
 SYSTEMS: Final = ("A", "B")
 RATES: Final = Rates._fields
@@ -158,7 +156,7 @@ class Analysis:
         """Phases driven by somebody, in order of system and number."""
         return sorted({d.phase for d in self.drives}, key=lambda phase: (phase[0], int(phase[1:])))
 
-    def rate(self, phase: str, measure: str) -> Floats:
+    def rate(self, phase: str, measure: str) -> FloatArray:
         """Return one rate in ``phase`` by participant; NaN for those who did not drive it."""
         return mean_rates(self.drives, self.participants, measure, (phase,))
 
@@ -172,7 +170,7 @@ class Analysis:
         interval = mean_interval(rates)
         return Interval(mean, max(interval.low, 0.0), min(interval.high, 1.0))
 
-    def per_participant(self, measure: str, system: str) -> Floats:
+    def per_participant(self, measure: str, system: str) -> FloatArray:
         """Return what each participant counts with, in the order of ``participants``."""
         if measure not in RATES:
             assert self.questionnaire is not None
@@ -183,7 +181,7 @@ class Analysis:
 
 def mean_rates(
     drives: Sequence[DriveRow], participants: Sequence[str], measure: str, phases: Collection[str]
-) -> Floats:
+) -> FloatArray:
     """Return each participant's mean of one rate over the drives of some phases; NaN if none."""
     found: dict[str, list[float]] = {name: [] for name in participants}
     for drive in drives:

@@ -18,10 +18,11 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import stats
 
-Floats = NDArray[np.float64]
+from ..kernel.arrays import FloatArray
+
 Method = Literal["exact", "normal"]
 
 EXACT_PAIRS_MAX: Final = 50
@@ -108,7 +109,7 @@ def compare(first: ArrayLike, second: ArrayLike) -> Comparison:
     )
 
 
-def differences(first: ArrayLike, second: ArrayLike) -> Floats:
+def differences(first: ArrayLike, second: ArrayLike) -> FloatArray:
     """Return first minus second; ValueError unless these are at least 2 pairs of numbers."""
     a, b = np.asarray(first, float), np.asarray(second, float)
     if a.ndim != 1 or a.shape != b.shape or len(a) < 2:
@@ -117,7 +118,7 @@ def differences(first: ArrayLike, second: ArrayLike) -> Floats:
         )
     if not (np.isfinite(a).all() and np.isfinite(b).all()):
         raise ValueError("every person needs both values; leave out people with a missing one")
-    difference: Floats = a - b
+    difference: FloatArray = a - b
     return difference
 
 
@@ -208,7 +209,7 @@ def mean_interval(values: ArrayLike, level: float = 0.95) -> Interval:
 
 def bootstrap_interval(
     values: ArrayLike,
-    statistic: Callable[[Floats], float],
+    statistic: Callable[[FloatArray], float],
     *,
     seed: int = 1,
     count: int = 2000,
@@ -230,13 +231,13 @@ def bootstrap_interval(
     return Interval(float(statistic(x)), float(low), float(high))
 
 
-def _signed_ranks(d: Floats) -> tuple[Floats, Floats]:
+def _signed_ranks(d: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the differences that are not zero and the ranks of their sizes."""
     kept = d[np.abs(d) > ZERO]
     return kept, np.asarray(stats.rankdata(np.abs(kept)), float)
 
 
-def _standard_error(values: Floats) -> float:
+def _standard_error(values: FloatArray) -> float:
     return float(np.std(values, ddof=1) / np.sqrt(len(values)))
 
 

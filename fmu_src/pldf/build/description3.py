@@ -9,7 +9,6 @@ from collections.abc import Iterable, Mapping
 from typing import Final
 from xml.etree.ElementTree import Element, SubElement
 
-from ..kernel.signals import Signal
 from ..fmi.description import (
     NO_GUID,
     Model,
@@ -22,6 +21,7 @@ from ..fmi.description import (
     header,
     type_attributes,
 )
+from ..kernel.signals import Signal
 
 _CAPABILITIES: Final = {
     "needsExecutionTool": "false",

@@ -8,9 +8,9 @@ from inspect import cleandoc
 from string import Template
 from typing import Final
 
-from ..kernel.signals import Signal
 from ..fmi.description import bounds
 from ..fmi.units import DISPLAY
+from ..kernel.signals import Signal
 
 _PAGE: Final = Template("""<!DOCTYPE html>
 <html lang="en">

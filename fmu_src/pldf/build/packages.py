@@ -12,13 +12,13 @@ from typing import Final
 
 from fmpy.ssp.ssd import read_ssd  # type: ignore[import-untyped]
 
-from . import ssp
-from .archive import write_archive
-from ..instance import ModelError
-from ..kernel.codes import LEARN_FAITHFUL
 from ..cosim.fmu import Fmu, Value
 from ..cosim.master import PARTS, STEP_S, connections
+from ..instance import ModelError
+from ..kernel.codes import LEARN_FAITHFUL
 from ..study.phases import PHASES, Phase, Setting, choose_route, values_of
+from . import ssp
+from .archive import write_archive
 
 # The function alone needs 211 s for the road; drivers who intervene are faster. No longer than
 # that, because time behind the end of the road lowers the rates that the function reports.

@@ -15,9 +15,9 @@ from typing import Final
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from .. import __version__
-from ..kernel.signals import Signal
 from ..fmi.description import bounds, literal
 from ..fmi.units import base_unit
+from ..kernel.signals import Signal
 
 STRUCTURE: Final = "SystemStructure.ssd"
 RESOURCES: Final = "resources"

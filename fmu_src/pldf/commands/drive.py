@@ -13,6 +13,7 @@ from ..cosim.fmu import Value
 from ..cosim.master import Drive, drive
 from ..instance import ModelError
 from ..kernel.codes import LEARN
+from ..kernel.units import KMH_PER_MPS
 from ..profiles.store import STORE_VARIABLE, ProfileStore
 from ..recordings.recording import write_recording
 from ..roads import fingerprint
@@ -35,8 +36,7 @@ EXAMPLE: Final = (
     "  pldf drive --driver script --script my_drive.csv --route road.xodr"
 )
 
-_KMH: Final = 3.6
-_CHANGED_MPS: Final = 0.1 / _KMH  # smaller changes do not count as learned
+_CHANGED_MPS: Final = 0.1 / KMH_PER_MPS  # smaller changes do not count as learned
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -174,7 +174,8 @@ def _print_learned(setting: Setting) -> None:
     if len(changed):
         largest = changed[np.argmax(np.abs(changed))]
         print(
-            f", on average {_KMH * np.mean(changed):+.1f} km/h, at most {_KMH * largest:+.1f} km/h",
+            f", on average {KMH_PER_MPS * np.mean(changed):+.1f} km/h, "
+            f"at most {KMH_PER_MPS * largest:+.1f} km/h",
             end="",
         )
     print(f"\nprofile    {store.path(driver_id, fingerprint(setting.route))}")

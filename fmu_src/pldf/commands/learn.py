@@ -7,6 +7,7 @@ import json
 from typing import Any, Final
 
 from ..function import DrivingFunction
+from ..kernel.units import KMH_PER_MPS
 from ..profiles.store import read_profile, write_profile
 from ..recordings.offline import Learned, explain, learn_from
 from ..recordings.recording import read_recording
@@ -67,7 +68,7 @@ def _print_summary(learned: Learned, report: dict[str, Any], out: str) -> None:
         )
     for entry in report["offsets"]:
         print(
-            f"Set speed {3.6 * entry['offset_mps']:+.1f} km/h from {entry['start_m']} m to "
+            f"Set speed {KMH_PER_MPS * entry['offset_mps']:+.1f} km/h from {entry['start_m']} m to "
             f"{entry['end_m']} m"
         )
     print(f"Iteration {learned.iteration.number} written to {out}")

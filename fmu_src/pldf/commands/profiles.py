@@ -13,6 +13,8 @@ from typing import Final
 import numpy as np
 
 from ..instance import ModelError
+from ..kernel.arrays import FloatArray
+from ..kernel.units import KMH_PER_MPS
 from ..profiles.store import (
     STORE_VARIABLE,
     ProfileRefused,
@@ -21,7 +23,7 @@ from ..profiles.store import (
     read_profile,
     rollback_profile,
 )
-from ..profiles.stored_profile import Floats, Iteration
+from ..profiles.stored_profile import Iteration
 
 SUMMARY: Final = "Show, export and roll back what was learned for drivers and routes."
 EXAMPLE: Final = """pldf profiles list --store profiles
@@ -32,8 +34,7 @@ EXAMPLE: Final = """pldf profiles list --store profiles
 
 All but 'list' take a profile file or, with a store, the number of a driver."""
 
-_KMH_PER_MPS: Final = 3.6
-_SHOWN_MPS: Final = 0.1 / _KMH_PER_MPS  # smaller differences round to nothing in the tables
+_SHOWN_MPS: Final = 0.1 / KMH_PER_MPS  # smaller differences round to nothing in the tables
 _EXAMPLES: Final = {
     "list": "pldf profiles list --store profiles",
     "show": "pldf profiles show 17 --store profiles --plot profile.png",
@@ -149,14 +150,14 @@ def _show(options: argparse.Namespace) -> None:
         print(f"plot       {options.plot}")
 
 
-def _print_places(title: str, difference_mps: Floats) -> None:
+def _print_places(title: str, difference_mps: FloatArray) -> None:
     places = _runs(np.abs(difference_mps) > _SHOWN_MPS)
     if not places:
         print(f"{title}: none")
         return
     print(f"{title}:\n{'from m':>9} {'to m':>9} {'mean km/h':>10} {'peak km/h':>10}")
     for first, last in places:
-        kmh = difference_mps[first : last + 1] * _KMH_PER_MPS
+        kmh = difference_mps[first : last + 1] * KMH_PER_MPS
         peak = kmh[np.argmax(np.abs(kmh))]
         print(f"{first:9} {last:9} {kmh.mean():+10.1f} {peak:+10.1f}")
 
@@ -176,8 +177,8 @@ def _history(options: argparse.Namespace) -> None:
     )
     for iteration in profile.iterations:
         before = profile.iteration(iteration.number - 1)
-        kmh = np.abs(iteration.learned_mps - before.learned_mps) * _KMH_PER_MPS
-        changed = int(np.count_nonzero(kmh > _SHOWN_MPS * _KMH_PER_MPS))
+        kmh = np.abs(iteration.learned_mps - before.learned_mps) * KMH_PER_MPS
+        changed = int(np.count_nonzero(kmh > _SHOWN_MPS * KMH_PER_MPS))
         print(
             f"{iteration.number:9} {iteration.interventions:13} {changed:9} "
             f"{kmh.mean():9.2f} {kmh.max():9.2f}  {iteration.note}"
@@ -218,7 +219,7 @@ def _plot(path: Path, profile: StoredProfile, iteration: Iteration) -> None:
     axes = figure.subplots()
     kilometres = np.arange(profile.nodes) / 1000.0
     for label, speed_mps in (("base", profile.base_mps), ("learned", iteration.learned_mps)):
-        axes.plot(kilometres, speed_mps * _KMH_PER_MPS, label=label, linewidth=1.2)
+        axes.plot(kilometres, speed_mps * KMH_PER_MPS, label=label, linewidth=1.2)
     axes.set(
         xlabel="distance in km",
         ylabel="speed in km/h",

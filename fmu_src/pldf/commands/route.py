@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Final
 
 from ..cosim.prepared import SUFFIX, write_prepared_route
+from ..kernel.units import KMH_PER_MPS
 from ..roads import fingerprint, open_route, write_route_csv
 from ..route_facts import BINDING_MPS, RouteFacts, route_facts
 
 SUMMARY: Final = "Show a route: limits, curves and base profile of an OpenDRIVE or CSV file."
 EXAMPLE: Final = "pldf route study --plot study.png"
 
-_KMH: Final = 3.6
 _LISTED_MAX: Final = 24
 _PICTURES: Final = (".png", ".pdf", ".svg")
 
@@ -49,7 +49,7 @@ def run(options: argparse.Namespace) -> None:
     route = open_route(
         options.file,
         start_road=options.start_road,
-        default_limit_mps=None if default is None else default / _KMH,
+        default_limit_mps=None if default is None else default / KMH_PER_MPS,
     )
     facts = route_facts(route)
     print("\n".join(_summary(facts)))
@@ -66,7 +66,7 @@ def run(options: argparse.Namespace) -> None:
 
 def _summary(facts: RouteFacts) -> Iterator[str]:
     route, time_s = facts.route, facts.driving_time_s
-    mean = (len(facts.base_mps) - 1) / time_s * _KMH
+    mean = (len(facts.base_mps) - 1) / time_s * KMH_PER_MPS
     yield f"route        {route.name}"
     yield f"length       {route.length_m:.1f} m" + ("" if route.has_line else ", no x and y")
     yield from _listed("limits", [f"{s:.0f} m: {_kmh(v)}" for s, v in facts.limits])
@@ -90,7 +90,7 @@ def _listed(title: str, items: list[str]) -> list[str]:
 
 
 def _kmh(speed_mps: float) -> str:
-    return f"{round(speed_mps * _KMH, 1):g} km/h"
+    return f"{round(speed_mps * KMH_PER_MPS, 1):g} km/h"
 
 
 def _picture(text: str) -> Path:

@@ -19,6 +19,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ..instance import ModelError
+from ..kernel.units import KMH_PER_MPS
 from ..recordings.recording import COLUMNS, Recording
 from .fmu import Fmu, Place, Said, Slave, Value, unpack
 from .native_files import readable_values
@@ -33,7 +34,7 @@ STEP_S: Final = 0.01
 STANDSTILL_MPS: Final = 0.1
 STANDSTILL_MAX_S: Final = 60.0
 # Slower than this on average, a drive is given up.
-SLOWEST_MPS: Final = 10.0 / 3.6
+SLOWEST_MPS: Final = 10.0 / KMH_PER_MPS
 _PROGRESS_STEPS: Final = 200
 
 ARRIVED: Final = "reached the end of the route"

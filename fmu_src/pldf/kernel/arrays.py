@@ -12,6 +12,12 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
+# Outside the kernels: a vector of one value per row, metre or person.
+FloatArray = NDArray[np.float64]
+
 
 class Floats(Protocol):
     """A mutable float64 vector: ``memoryview`` or ``numpy.ndarray``."""

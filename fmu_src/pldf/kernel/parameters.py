@@ -16,8 +16,7 @@ from .codes import (
     STRETCH_RECORDED,
 )
 from .signals import choice_parameter, count_parameter, flag_parameter, real_parameter
-
-KMH = 1.0 / 3.6
+from .units import MPS_PER_KMH
 
 
 @dataclass(slots=True)
@@ -93,16 +92,16 @@ class ControlParameters(PlannerParameters):
         "Pedal travel from which a pedal counts as pressed", "", start=0.02, low=0.0, high=0.5
     )
     control_tip_short_mps: float = real_parameter(
-        "Set-speed change by a short tip", "m/s", start=KMH, low=0.0, high=20.0
+        "Set-speed change by a short tip", "m/s", start=MPS_PER_KMH, low=0.0, high=20.0
     )
     control_tip_long_mps: float = real_parameter(
-        "Set-speed change by a long tip", "m/s", start=5.0 * KMH, low=0.0, high=20.0
+        "Set-speed change by a long tip", "m/s", start=5.0 * MPS_PER_KMH, low=0.0, high=20.0
     )
     control_set_speed_min_mps: float = real_parameter(
-        "Lowest manual set speed", "m/s", start=20.0 * KMH, low=1.0, high=100.0
+        "Lowest manual set speed", "m/s", start=20.0 * MPS_PER_KMH, low=1.0, high=100.0
     )
     control_set_speed_max_mps: float = real_parameter(
-        "Highest manual set speed", "m/s", start=180.0 * KMH, low=1.0, high=100.0
+        "Highest manual set speed", "m/s", start=180.0 * MPS_PER_KMH, low=1.0, high=100.0
     )
     control_lever_bounce_s: float = real_parameter(
         "Lever contacts that close this soon after another are chatter",
@@ -152,7 +151,7 @@ class Parameters(ControlParameters):
         "Curvature from which nothing is stretched", "1/m", start=0.016, low=0.0, high=1.0
     )
     learning_deviation_min_mps: float = real_parameter(
-        "Deviation from the profile that is learned", "m/s", start=KMH, low=0.0, high=20.0
+        "Deviation from the profile that is learned", "m/s", start=MPS_PER_KMH, low=0.0, high=20.0
     )
     learning_segment_gap_s: float = real_parameter(
         "Gap between learned runs below which they merge", "s", start=1.0, low=0.0, high=30.0
@@ -161,7 +160,7 @@ class Parameters(ControlParameters):
         "Hole in the recording that rejects a segment", "s", start=1.0, low=0.01, high=60.0
     )
     learning_speed_min_mps: float = real_parameter(
-        "Speed below which nothing is learned", "m/s", start=10.0 * KMH, low=1.0, high=50.0
+        "Speed below which nothing is learned", "m/s", start=10.0 * MPS_PER_KMH, low=1.0, high=50.0
     )
     learning_weight: float = real_parameter(
         "Weight of the driver against the profile in the mean of eq. (3)",
@@ -188,7 +187,7 @@ class Parameters(ControlParameters):
     learning_offset_settled_mps: float = real_parameter(
         "Distance from the new speed at which the car counts as settled",
         "m/s",
-        start=KMH,
+        start=MPS_PER_KMH,
         low=0.0,
         high=20.0,
     )
@@ -198,7 +197,7 @@ class Parameters(ControlParameters):
     )  # fmt: skip
     learning_over_limit_max_mps: float = real_parameter(
         "How far a learned profile may exceed the legal limit, 0 = not at all",
-        "m/s", start=20.0 * KMH, low=0.0, high=50.0,
+        "m/s", start=20.0 * MPS_PER_KMH, low=0.0, high=50.0,
     )  # fmt: skip
     learning_accel_max_mps2: float = real_parameter(
         "Strongest acceleration of a learned profile", "m/s2", start=2.0, low=0.1, high=10.0

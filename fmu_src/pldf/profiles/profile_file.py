@@ -47,7 +47,8 @@ from typing import Final, NamedTuple, NoReturn
 
 import numpy as np
 
-from .stored_profile import Floats, Iteration, ProfileRefused, StoredProfile
+from ..kernel.arrays import FloatArray
+from .stored_profile import Iteration, ProfileRefused, StoredProfile
 
 VERSION: Final = 1
 ALIGNMENT: Final = 64
@@ -225,7 +226,7 @@ def _check_sum(data: bytes, file: str) -> None:
         )
 
 
-def _column(data: bytes, head: _Header, block: int, file: str) -> Floats:
+def _column(data: bytes, head: _Header, block: int, file: str) -> FloatArray:
     name, low, whole = _COLUMNS[0 if block == 0 else 1 + (block - 1) % 4]
     start = head.size + block * head.stride
     values = np.frombuffer(data, "<f8", head.nodes, start)
@@ -254,7 +255,7 @@ _COLUMNS: Final = (
 )
 
 
-def _blocks(profile: StoredProfile) -> Iterator[tuple[str, Floats]]:
+def _blocks(profile: StoredProfile) -> Iterator[tuple[str, FloatArray]]:
     yield "base_mps", profile.base_mps
     for iteration in profile.iterations:
         for name, _, _ in _COLUMNS[1:]:

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..instance import ModelError
-
-Floats = NDArray[np.float64]
+from ..kernel.arrays import FloatArray
 
 
 class ProfileRefused(ModelError):  # noqa: N818 - it says what was done, to a person
@@ -50,10 +48,10 @@ class Iteration:
     number: int
     note: str
     interventions: int
-    learned_mps: Floats
-    offset_mps: Floats
-    drive: Floats
-    intervention: Floats
+    learned_mps: FloatArray
+    offset_mps: FloatArray
+    drive: FloatArray
+    intervention: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +67,7 @@ class StoredProfile:
 
     driver_id: int
     route: str
-    base_mps: Floats
+    base_mps: FloatArray
     iterations: tuple[Iteration, ...] = ()
 
     @property

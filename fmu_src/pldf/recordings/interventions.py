@@ -7,6 +7,7 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..kernel.arrays import FloatArray
 from ..kernel.codes import ACTIVE, GAS_OVERRIDE, STANDBY
 from .recording import Recording
 
@@ -90,7 +91,7 @@ def _start(recording: Recording, first: int, behind: int) -> int:
     return -1
 
 
-def _after_activation(mode: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _after_activation(mode: FloatArray) -> NDArray[np.bool_]:
     return np.maximum.accumulate((mode == ACTIVE) | (mode == GAS_OVERRIDE))
 
 

@@ -9,9 +9,11 @@ import numpy as np
 
 from ..function import DrivingFunction
 from ..instance import ModelError, view
+from ..kernel.arrays import FloatArray
 from ..kernel.interpolation import cell_at
 from ..kernel.replay import Samples, replay
 from ..kernel.stretch import stretch_factor, stretched_position
+from ..kernel.units import KMH_PER_MPS
 from ..profiles.store import Iteration, StoredProfile
 from ..roads import Route, fingerprint
 from .recording import Recording, completed
@@ -120,10 +122,10 @@ def _why_not(learned: Learned, start_m: float, end_m: float) -> str:
     if np.asarray(trace.gap)[reach].any():
         return f"hole of more than {st.learning_recording_gap_s:g} s in the recording"
     if not np.asarray(trace.usable)[reach].all():
-        return f"below {3.6 * st.learning_speed_min_mps:g} km/h or not eligible"
+        return f"below {KMH_PER_MPS * st.learning_speed_min_mps:g} km/h or not eligible"
     return (
-        f"within {3.6 * st.learning_deviation_min_mps:.3g} km/h of the profile, or part of the "
-        "segment of another intervention"
+        f"within {KMH_PER_MPS * st.learning_deviation_min_mps:.3g} km/h of the profile, or part "
+        "of the segment of another intervention"
     )
 
 
@@ -154,7 +156,7 @@ def _offsets(learned: Learned) -> list[dict[str, Any]]:
     ]
 
 
-def _runs(values: np.typing.NDArray[np.float64]) -> list[tuple[int, int, float]]:
+def _runs(values: FloatArray) -> list[tuple[int, int, float]]:
     """Return (first, last, value) of each run of equal values."""
     starts = np.flatnonzero(np.diff(values, prepend=np.nan) != 0.0)
     ends = np.append(starts[1:] - 1, len(values) - 1)

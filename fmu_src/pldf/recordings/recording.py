@@ -15,11 +15,10 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..files.disk import replace_file
 from ..instance import ModelError
-from ..kernel.arrays import ProfileArrays, RouteArrays
+from ..kernel.arrays import FloatArray, ProfileArrays, RouteArrays
 from ..kernel.codes import GAS_OVERRIDE, MODE, STANDBY
 
 COLUMNS: Final = (
@@ -38,8 +37,6 @@ COLUMNS: Final = (
     "eligible",
 )
 NEEDED: Final = ("time_s", "s_m", "speed_mps", "mode")
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,16 +6,14 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..function import DrivingFunction
+from ..kernel.arrays import FloatArray
 from ..kernel.interpolation import value_at
 from ..kernel.stretch import joined_speed, stretch_factor, stretched_position
 from ..roads import Route
 from .offline import Learned, learn_from
 from .recording import Recording
-
-Floats = NDArray[np.float64]
 
 AROUND_M: Final = 60.0  # shown before and behind
 _INTERESTING_MPS: Final = 1.5  # a smaller change is hard to see in a figure
@@ -42,15 +40,15 @@ class Steps:
     number: int
     kind: Literal["gas", "brake"]
     alpha: float
-    piece_m: Floats
-    recorded_mps: Floats
-    stretched_m: Floats
-    joined_mps: Floats
-    node_m: Floats
-    driven_mps: Floats
-    followed_mps: Floats
-    mean_mps: Floats
-    learned_mps: Floats
+    piece_m: FloatArray
+    recorded_mps: FloatArray
+    stretched_m: FloatArray
+    joined_mps: FloatArray
+    node_m: FloatArray
+    driven_mps: FloatArray
+    followed_mps: FloatArray
+    mean_mps: FloatArray
+    learned_mps: FloatArray
 
 
 def explain_steps(recording: Recording, route: Route, function: DrivingFunction) -> Steps | None:
@@ -93,7 +91,7 @@ def _most_telling(learned: Learned) -> int | None:
     return -max(found)[2] if found else None
 
 
-def _steps(learned: Learned, k: int, mean_mps: Floats) -> Steps:
+def _steps(learned: Learned, k: int, mean_mps: FloatArray) -> Steps:
     function = learned.function
     st, trace = function.record, function.trace
     ends = d_0, d_n = trace.start_m[k], trace.end_m[k]

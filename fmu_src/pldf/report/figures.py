@@ -17,11 +17,11 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter
 
 from ..instance import ModelError
+from ..kernel.units import KMH_PER_MPS
 from ..profiles.stored_profile import StoredProfile
 from ..recordings.interventions import Interval, pedal_interventions, set_speed_interventions
 from ..recordings.recording import Recording
 
-KMH: Final = 3.6
 KM: Final = 1e-3
 BLACK, GREY, BLUE, SKY, GREEN, VERMILLION, ORANGE, PURPLE = (
     "#000000", "#666666", "#0072B2", "#56B4E9", "#009E73", "#D55E00", "#E69F00", "#CC79A7",
@@ -90,8 +90,8 @@ def figure_of(
     if profile is not None:
         newest = profile.iteration()
         axes[0].plot(
-            np.arange(profile.nodes) * KM, newest.learned_mps * KMH, color=PURPLE, linewidth=1.6,
-            linestyle=(0, (1, 1)), label=f"Profile after drive {newest.number}",
+            np.arange(profile.nodes) * KM, newest.learned_mps * KMH_PER_MPS, color=PURPLE,
+            linewidth=1.6, linestyle=(0, (1, 1)), label=f"Profile after drive {newest.number}",
         )  # fmt: skip
     axes[0].set_ylabel("Speed (km/h)")
     _draw_pedals(axes[-1], recordings)
@@ -106,10 +106,12 @@ def draw_drive(axis: Any, recording: Recording) -> None:
     s_km = recording["s_m"] * KM
     draw_limit_and_base(axis, recording)
     if np.any(np.abs(recording["profile_mps"] - recording["base_mps"]) > 1e-6):
-        base, followed = recording["base_mps"] * KMH, recording["profile_mps"] * KMH
+        base, followed = recording["base_mps"] * KMH_PER_MPS, recording["profile_mps"] * KMH_PER_MPS
         axis.fill_between(s_km, base, followed, color=SKY, alpha=0.35, linewidth=0)
         axis.plot(s_km, followed, color=BLUE, linewidth=1.6, label="Learned profile, followed")
-    axis.plot(s_km, recording["speed_mps"] * KMH, color=BLACK, linewidth=1.3, label="Speed driven")
+    axis.plot(
+        s_km, recording["speed_mps"] * KMH_PER_MPS, color=BLACK, linewidth=1.3, label="Speed driven"
+    )
     for interval in pedal_interventions(recording):
         axis.axvspan(s_km[interval.first], s_km[interval.last], **STYLES[interval.kind])
     for interval in set_speed_interventions(recording):
@@ -121,8 +123,8 @@ def draw_drive(axis: Any, recording: Recording) -> None:
 def fit_speeds(axis: Any, recordings: Sequence[Recording]) -> None:
     """Set the speed axis to what was driven and allowed, with room for the strip below."""
     names = ("limit_mps", "base_mps", "profile_mps", "speed_mps")
-    low = min(float(np.min(r[name])) for r in recordings for name in names[1:]) * KMH
-    high = max(float(np.max(r[name])) for r in recordings for name in names) * KMH
+    low = min(float(np.min(r[name])) for r in recordings for name in names[1:]) * KMH_PER_MPS
+    high = max(float(np.max(r[name])) for r in recordings for name in names) * KMH_PER_MPS
     axis.set_ylim(max(low - 0.25 * (high - low) - 2.0, 0.0), high + 0.08 * (high - low) + 2.0)
 
 
@@ -130,11 +132,11 @@ def draw_limit_and_base(axis: Any, recording: Recording) -> None:
     """Draw the legal limit and the base profile along a recording."""
     s_km = recording["s_m"] * KM
     axis.step(
-        s_km, recording["limit_mps"] * KMH, where="post", color=GREY, linewidth=1.6,
+        s_km, recording["limit_mps"] * KMH_PER_MPS, where="post", color=GREY, linewidth=1.6,
         label="Legal limit",
     )  # fmt: skip
     axis.plot(
-        s_km, recording["base_mps"] * KMH, color=BLUE, linewidth=1.1, linestyle=(0, (4, 2)),
+        s_km, recording["base_mps"] * KMH_PER_MPS, color=BLUE, linewidth=1.1, linestyle=(0, (4, 2)),
         label="Base profile",
     )  # fmt: skip
 
@@ -170,7 +172,7 @@ def _draw_several(axis: Any, recordings: Mapping[str, Recording]) -> None:
     draw_limit_and_base(axis, next(iter(recordings.values())))
     for number, (name, recording) in enumerate(recordings.items()):
         axis.plot(
-            recording["s_m"] * KM, recording["speed_mps"] * KMH, linewidth=1.4,
+            recording["s_m"] * KM, recording["speed_mps"] * KMH_PER_MPS, linewidth=1.4,
             color=DRIVES[number % len(DRIVES)], label=name,
         )  # fmt: skip
     fit_speeds(axis, list(recordings.values()))

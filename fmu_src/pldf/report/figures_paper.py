@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from ..analysis.analysis import RATES, Analysis
 from ..analysis.long_run import PANELS, Columns
 from ..analysis.published import published_means
+from ..kernel.units import KMH_PER_MPS
 from ..recordings.recording import Recording
 from ..recordings.steps import Steps
 from ..study.phases import PHASES
@@ -21,7 +22,6 @@ from .figures import (
     GREEN,
     GREY,
     KM,
-    KMH,
     ORANGE,
     PURPLE,
     VERMILLION,
@@ -113,7 +113,7 @@ def steps_figure(steps: Steps) -> Figure:
         ("4 mean", node, steps.mean_mps, {"color": GREEN, "ls": "--", "lw": 1.6}),
     )
     for name, s_m, speed_mps, style in drawn:
-        axis.plot(s_m * KM, speed_mps * KMH, label=name, **style)
+        axis.plot(s_m * KM, speed_mps * KMH_PER_MPS, label=name, **style)
     axis.set_xlabel("Distance (km)")
     axis.set_ylabel("Speed (km/h)")
     _plain(axis)

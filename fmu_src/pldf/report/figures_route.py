@@ -8,9 +8,9 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
+from ..kernel.units import KMH_PER_MPS
 from ..route_facts import BINDING_MPS, RouteFacts
 
-_KMH: Final = 3.6
 _KM: Final = 1e-3
 # Okabe and Ito's colours keep apart for every kind of colour vision.
 _LIMIT, _CURVE, _BASE, _SHADE = "#404040", "#D55E00", "#0072B2", "#E69F00"
@@ -49,16 +49,18 @@ def minutes(time_s: float) -> str:
 
 
 def _draw_speeds(axis: Any, facts: RouteFacts) -> None:
-    limit, base = np.asarray(facts.arrays.limit_mps) * _KMH, facts.base_mps * _KMH
+    limit, base = np.asarray(facts.arrays.limit_mps) * KMH_PER_MPS, facts.base_mps * KMH_PER_MPS
     s_km = np.arange(len(base)) * _KM
     top = 1.18 * float(np.max(limit))
     for index, curve in enumerate(facts.curves):
-        label = f"Curve binds (over {BINDING_MPS * _KMH:.0f} km/h below the limit)"
+        label = f"Curve binds (over {BINDING_MPS * KMH_PER_MPS:.0f} km/h below the limit)"
         axis.axvspan(
             curve.start_m * _KM, curve.end_m * _KM, color=_SHADE, alpha=0.25, linewidth=0,
             label=label if index == 0 else None,
         )  # fmt: skip
-    speed = np.minimum(facts.curve_speed_mps * _KMH, 2.0 * top)  # leaves the axes, not to infinity
+    speed = np.minimum(
+        facts.curve_speed_mps * KMH_PER_MPS, 2.0 * top
+    )  # leaves the axes, not to infinity
     axis.plot(s_km, speed, color=_CURVE, linestyle=(0, (4, 2)), linewidth=1.2,
               label="Curve speed at 2.5 m/s²")  # fmt: skip
     axis.step(s_km, limit, where="post", color=_LIMIT, linewidth=1.8, label="Legal limit")

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
+from ..kernel.units import KMH_PER_MPS
 from ..profiles.stored_profile import StoredProfile
 from ..recordings.interventions import Rates
 from ..recordings.recording import Recording
@@ -18,7 +19,6 @@ from .figures import (
     GREEN,
     GREY,
     KM,
-    KMH,
     ORANGE,
     SKY,
     draw_drive,
@@ -80,8 +80,8 @@ def profile_figure(
     for number, name in enumerate(names, start=1):
         learned = profile.iteration(number).learned_mps
         style = _style(number, len(names))
-        axes[0].plot(s_km, learned * KMH, label=f"After {name}", **style)
-        axes[1].plot(s_km, (learned - profile.base_mps) * KMH, **style)
+        axes[0].plot(s_km, learned * KMH_PER_MPS, label=f"After {name}", **style)
+        axes[1].plot(s_km, (learned - profile.base_mps) * KMH_PER_MPS, **style)
     axes[0].margins(y=0.08)
     axes[0].set_ylabel("Speed (km/h)")
     axes[1].set_ylabel("Learned minus base\n(km/h)")

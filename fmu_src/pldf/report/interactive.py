@@ -10,12 +10,13 @@ from typing import Any, Final
 
 import numpy as np
 import plotly.graph_objects as go  # type: ignore[import-untyped]
-from numpy.typing import NDArray
 from plotly.subplots import make_subplots  # type: ignore[import-untyped]
 
 from ..analysis.analysis import RATES, Analysis
 from ..analysis.long_run import PANELS, Columns
 from ..analysis.published import published_means
+from ..kernel.arrays import FloatArray
+from ..kernel.units import KMH_PER_MPS
 from ..recordings.interventions import pedal_interventions, set_speed_interventions
 from ..recordings.recording import Recording
 from ..recordings.steps import Steps
@@ -23,9 +24,7 @@ from ..route_facts import RouteFacts
 from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION
 from .material import DriverShown, Material
 from .page_tables import RATE_TITLES
-from .traces import BASE, KMH, Look, driven_line, limit_line, line, short, styled
-
-Floats = NDArray[np.float64]
+from .traces import BASE, Look, driven_line, limit_line, line, short, styled
 
 STEP_NAMES: Final = ("1 recorded", "2 stretched", "3 offset", "4 mean", "5 smoothed")
 _KINDS: Final = {
@@ -131,7 +130,7 @@ def route_figure(facts: RouteFacts) -> Any:
         "hovertemplate": "%{y:.1f} per km<extra></extra>",
     }
     _add(figure, curvature, row=2)
-    figure.update_yaxes(title_text="Speed (km/h)", range=[0, KMH * top], row=1, col=1)
+    figure.update_yaxes(title_text="Speed (km/h)", range=[0, KMH_PER_MPS * top], row=1, col=1)
     figure.update_yaxes(title_text="Curvature (1/km)<br>left positive", row=2, col=1)
     return styled(figure, 570)
 
@@ -291,5 +290,5 @@ def _add(figure: Any, trace: dict[str, Any], row: int | None = 1) -> None:
     figure.add_trace(trace, row=row, col=None if row is None else 1)
 
 
-def _plain(values: Floats) -> list[float | None]:
+def _plain(values: FloatArray) -> list[float | None]:
     return [None if np.isnan(value) else round(value, 3) for value in values.tolist()]

@@ -10,12 +10,11 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..kernel.arrays import FloatArray
+from ..kernel.units import KMH_PER_MPS
 from ..recordings.recording import Recording
 from .figures import BLUE, GREY, ORANGE, PURPLE, SKY, VERMILLION
 
-Floats = NDArray[np.float64]
-
-KMH: Final = 3.6
 EVERY_M: Final = 2.0  # one point of a recording per so many metres is drawn
 _ENTRIES_PER_ROW: Final = 6  # of a legend, about
 _GRID: Final = "#e3e3e3"
@@ -42,12 +41,12 @@ _DRIVEN: Final = (
 )
 
 
-def line(s_m: Floats, speed_mps: Floats, look: Look, **more: Any) -> dict[str, Any]:
+def line(s_m: FloatArray, speed_mps: FloatArray, look: Look, **more: Any) -> dict[str, Any]:
     """Return the trace of a speed (or difference of speeds) over distance."""
     return {
         "type": "scatter",
         "x": short(s_m / 1000),
-        "y": short(KMH * speed_mps),
+        "y": short(KMH_PER_MPS * speed_mps),
         "mode": "lines",
         "name": look.name,
         "line": {"color": look.colour, "width": look.width, "dash": look.dash},
@@ -56,7 +55,7 @@ def line(s_m: Floats, speed_mps: Floats, look: Look, **more: Any) -> dict[str, A
     }
 
 
-def limit_line(s_m: Floats, limit_mps: Floats) -> dict[str, Any]:
+def limit_line(s_m: FloatArray, limit_mps: FloatArray) -> dict[str, Any]:
     """Return the trace of the legal limit, given per metre; only its corners are kept."""
     ends = np.flatnonzero(np.diff(limit_mps, prepend=np.nan, append=np.nan))
     corners = np.unique(np.clip(np.concatenate((ends, ends - 1)), 0, len(s_m) - 1))
@@ -73,7 +72,7 @@ def driven_line(number: int, phase: str, recording: Recording, **more: Any) -> d
     return line(s_m, speed, Look(f"Speed driven in {phase}", colour, 1.8, dash), **more)
 
 
-def short(values: Floats) -> NDArray[np.float32]:
+def short(values: FloatArray) -> NDArray[np.float32]:
     """Return four bytes a number: what is lost does not show."""
     return np.asarray(values, dtype=np.float32)
 

@@ -16,7 +16,8 @@ from typing import Final
 import numpy as np
 
 from ..instance import ModelError
-from .route import COLUMNS, FloatArray, Route, fingerprint, first_fault
+from ..kernel.arrays import FloatArray
+from .route import COLUMNS, Route, fingerprint, first_fault
 
 REQUIRED: Final = COLUMNS[:3]
 _FORMAT: Final = "s_m,curvature_per_m,speed_limit_mps[,grade][,x_m,y_m]"

@@ -13,7 +13,8 @@ from typing import Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ..kernel.arrays import FloatArray
+
 Cubic = tuple[float, float, float, float]
 
 # Gauss-Legendre nodes and weights on [0, 1]: exact far beyond 1e-9 m over 1 m of any road.

@@ -20,9 +20,10 @@ from typing import Any, Final, TypeVar
 import numpy as np
 
 from ..instance import ModelError
+from ..kernel.arrays import FloatArray
 from .chain import Leg, Network
 from .geometry import Cubic, Geometry, LinearCurvature, Pose, param_poly3, poly3
-from .route import LENGTH_MAX_M, FloatArray, Route
+from .route import LENGTH_MAX_M, Route
 from .speeds import limits
 from .xml_tree import Element, Place, parse_xml
 

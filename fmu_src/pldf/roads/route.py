@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..instance import ModelError
-from ..kernel.arrays import RouteArrays
-
-FloatArray = NDArray[np.float64]
+from ..kernel.arrays import FloatArray, RouteArrays
+from ..kernel.units import KMH_PER_MPS
 
 LENGTH_MIN_M: Final = 2.0
 LENGTH_MAX_M: Final = 1e7  # ten times across a continent; a slip of a digit must not fill memory
 # A limit above this is a km/h value in a m/s field, not a road.
-LIMIT_MAX_MPS: Final = 300.0 / 3.6
+LIMIT_MAX_MPS: Final = 300.0 / KMH_PER_MPS
 # Curves tighter than 1 m do not exist on roads; broken polynomials and kinks of a line do.
 CURVATURE_MAX_PER_M: Final = 1.0
 COLUMNS: Final = ("s_m", "curvature_per_m", "speed_limit_mps", "grade", "x_m", "y_m")

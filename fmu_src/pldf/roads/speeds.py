@@ -11,10 +11,11 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from typing import Final
 
+from ..kernel.units import KMH_PER_MPS, MPS_PER_KMH
 from .xml_tree import Element, Place
 
-NO_LIMIT_MPS: Final = 130.0 / 3.6
-_UNITS: Final = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
+NO_LIMIT_MPS: Final = 130.0 / KMH_PER_MPS
+_UNITS: Final = {"m/s": 1.0, "km/h": MPS_PER_KMH, "mph": 0.44704}
 _WAY_OUT: Final = "add type/speed to the file or give a default limit (--default-limit KMH)"
 
 
@@ -106,7 +107,7 @@ def _speed(element: Element, place: Place) -> float | None:
     if value == -1.0:
         return None
     limit = value * _UNITS[unit.lower()]
-    if not 0.0 < limit <= 300.0 / 3.6:
+    if not 0.0 < limit <= 300.0 / KMH_PER_MPS:
         shown = f"{text} {unit}" + ("" if "unit" in element.attributes else " (no unit given)")
         raise place.error(element, f"speed limit {shown} must lie above 0 and up to 300 km/h")
     return limit

@@ -17,10 +17,11 @@ from typing import Any, Final, Protocol
 
 import numpy as np
 
-from vehicle_models.driver_state import KMH, DriverParameters
+from vehicle_models.driver_state import DriverParameters
 
 from ..instance import ModelError
 from ..kernel.signals import signals_of
+from ..kernel.units import MPS_PER_KMH
 from .participants import Participant
 
 STANDARD: Final = NormalDist()
@@ -113,12 +114,14 @@ class Distribution:
     only keep rare draws plausible.
     """
 
-    wish_offset_mps: Law = Normal(7.0 * KMH, 5.0 * KMH)
+    wish_offset_mps: Law = Normal(7.0 * MPS_PER_KMH, 5.0 * MPS_PER_KMH)
     wish_lateral_accel_max_mps2: Law = Lognormal(2.9, 0.25)
     wish_accel_max_mps2: Law = Lognormal(1.5, 0.2, low=0.5, high=3.0)  # decision
     wish_accel_min_mps2: Law = Lognormal(-1.3, 0.2, low=-3.0, high=-0.5)  # decision
     wish_anticipation_s: Law = Normal(2.0, 1.5, low=0.0, high=20.0)
-    driver_threshold_mps: Law = Lognormal(5.0 * KMH, 0.3, low=0.5 * KMH)  # sigma: decision
+    driver_threshold_mps: Law = Lognormal(
+        5.0 * MPS_PER_KMH, 0.3, low=0.5 * MPS_PER_KMH
+    )  # sigma: decision
     driver_reaction_s: Law = Lognormal(1.0, 0.3, low=0.5, high=2.0)  # sigma: decision
     driver_overshoot: Law = Uniform(0.0, 1.2)
     driver_reactivation_s: Law = Lognormal(2.0, 0.4, low=0.3, high=20.0)  # sigma: decision

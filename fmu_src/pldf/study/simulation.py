@@ -26,7 +26,7 @@ from ..cosim.fmu import Value
 from ..cosim.master import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS
 from ..function import DrivingFunction, next_iteration
 from ..instance import Instance, ModelError, zeros
-from ..kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
+from ..kernel.arrays import FloatArray, NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from ..kernel.codes import LEARN_FAITHFUL, LEARN_OFF, OFF, STANDBY
 from ..kernel.signals import signals_of
 from ..kernel.state import PldfState
@@ -39,7 +39,6 @@ from .loop import ARRIVED, STOOD_STILL, Ends, Models, Rows, World
 from .participants import DriveResult, Participant, Row, StudySettings, order_of, seed_of
 from .phases import HANDS_OFF, PHASES, PREFERENCE, Phase
 
-FloatArray = NDArray[np.float64]
 Packed = NDArray[np.void]
 
 DRIVER_MODULES: Final = (driver_kernel, pedal_kernel, script_kernel, wish_kernel)

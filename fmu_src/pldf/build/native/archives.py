@@ -13,20 +13,20 @@ from typing import Any, Final, NamedTuple
 from xml.etree.ElementTree import Element, indent, tostring
 
 from ...build_version import native_making
+from ...cosim.platforms import TARGETS
 from ...fmi.description import Model, model_description
-from ..archive import DESCRIPTION, guid_of, with_guid, with_version, write_archive
-from ..description3 import model_description3
-from ..builder import license_of
-from ..documentation import as_machine_code, document
 from ...fmi.slave import LOG_CATEGORIES
 from ...kernel.signals import Signal
+from ..archive import DESCRIPTION, guid_of, with_guid, with_version, write_archive
+from ..builder import license_of
+from ..description3 import model_description3
+from ..documentation import as_machine_code, document
 from .language import check_language
 from .linking import FLAGS, HEADERS, link, universal
 from .model import NativeModel
 from .objects import compile_objects
 from .symbols import check_library
 from .table import header, signals, source
-from ...cosim.platforms import TARGETS
 
 _TEXTS: Final = {
     "route_file": "Route prepared by 'pldf route FILE --export OUT.prepared', in place of route_id",

@@ -29,9 +29,9 @@ import llvmlite.binding as llvm  # type: ignore[import-untyped]
 import numba
 
 from ...compiled import OPTIONS, compile_modules, pack, user_cache
+from ...cosim.platforms import TARGETS
 from ...files.disk import replace_file
 from .symbols import needed_by_object
-from ...cosim.platforms import TARGETS
 
 # What LLVM may call in place of a loop or an instruction that the target lacks (bzero: macOS).
 LIBRARY: Final = frozenset({"__bzero", "bzero", "floor", "memcpy", "memmove", "memset", "sqrt"})

@@ -1,0 +1,170 @@
+"""The three FMUs: what each is made of, and how it is built, of Python source or native.
+
+Everything that a build needs lies in the installed packages. The same sources give the same bytes.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Final
+
+from fmpy.validation import validate_fmu  # type: ignore[import-untyped]
+
+from ..build_version import build_version
+from ..cosim.master import unpacked
+from ..cosim.platforms import PLATFORMS
+from ..instance import ModelError
+from .builder import Package, Recipe, build
+from .packages import write_packages, write_sources
+
+HERE: Final = Path(__file__).resolve().parent
+RUNTIME: Final = HERE / "runtime"
+# Where native FMUs go: below the folder of the Python ones.
+NATIVE_FOLDER: Final = "native"
+NEEDS_EXTRA: Final = "run: pip install 'adaptive-pldf[native]'"
+
+
+def _folder_of(package: str) -> Path:
+    spec = find_spec(package)
+    if spec is None or not spec.submodule_search_locations:
+        raise ImportError(f"package {package} is not installed")
+    return Path(spec.submodule_search_locations[0])
+
+
+PLDF: Final = Package(
+    HERE.parent,
+    # Research tools, and what builds FMUs: none of it runs inside one.
+    skip=(
+        "__main__.py",
+        "analysis",
+        "build",
+        "build_version.py",
+        "cli.py",
+        "commands",
+        "compiled.py",
+        "cosim",
+        "recordings",
+        "report",
+        "roads/make_study_road.py",
+        "route_facts.py",
+        "study",
+    ),
+)
+MODELS: Final = Package(
+    _folder_of("vehicle_models"),
+    skip=("longitudinal_vehicle.py", "native.py", "scripted_driver.py"),
+)
+
+
+def _recipe(script: Path, *packages: Package) -> Recipe:
+    return Recipe(script, packages, HERE / "model.png", build_version())
+
+
+FMUS: Final = {
+    "AdaptivePLDF": _recipe(HERE / "adaptive_pldf.py", PLDF),
+    "LongitudinalVehicle": _recipe(MODELS.folder / "longitudinal_vehicle.py", PLDF, MODELS),
+    "ScriptedDriver": _recipe(MODELS.folder / "scripted_driver.py", PLDF, MODELS),
+}
+
+# Where the native build finds its models.
+NATIVE: Final = {
+    "AdaptivePLDF": "pldf.build.native.driving_function:MODEL",
+    "LongitudinalVehicle": "vehicle_models.native:VEHICLE",
+    "ScriptedDriver": "vehicle_models.native:DRIVER",
+}
+
+# Called with the piece of work that begins.
+Tell = Callable[[str], None]
+
+
+def build_python(name: str, out: Path, tell: Tell) -> list[Path]:
+    """Build and validate one FMU of Python source in ``out``.
+
+    Raises:
+        ValueError: it cannot be packed, or fmpy finds a problem in it.
+    """
+    tell("pack the Python source")
+    paths = [build(FMUS[name], out)]
+    tell("validate")
+    require_valid(paths)
+    return paths
+
+
+def build_native(name: str, out: Path, targets: Sequence[str], tell: Tell) -> list[Path]:
+    """Build and validate one native FMU in ``out/native``, for FMI 2.0 and 3.0.
+
+    Args:
+        name: a key of ``FMUS``.
+        out: folder of the Python FMUs.
+        targets: keys of ``cosim.platforms.PLATFORMS``; empty: all.
+        tell: told what is being done.
+
+    Raises:
+        ValueError: the extra is not installed, the build fails, or fmpy finds a problem.
+    """
+    try:
+        from vehicle_models.native import packed_scripts  # noqa: PLC0415 - needs the extra
+
+        from ..cosim.prepared import packed_files  # noqa: PLC0415
+        from .native import archives  # noqa: PLC0415
+    except ImportError as missing:
+        raise ValueError(f"{missing}; {NEEDS_EXTRA}") from None
+    resources = packed_files()
+    if name == "ScriptedDriver":
+        resources |= packed_scripts()
+    packed = FMUS[name]
+    recipe = archives.NativeRecipe(
+        NATIVE[name],
+        RUNTIME,
+        resources,
+        documented_class(packed.script),
+        packed.icon,
+        packed.version,
+    )
+    chosen = [t for platform in targets or PLATFORMS for t in PLATFORMS[platform]]
+    paths = archives.build_native(recipe, chosen, out / NATIVE_FOLDER, tell)
+    tell("validate")
+    require_valid(paths)
+    return paths
+
+
+def require_valid(paths: Sequence[Path]) -> None:
+    """Raise ValueError, and leave none of the archives, if fmpy finds a problem in one."""
+    for path in paths:
+        problems = validate_fmu(str(path))
+        if problems:
+            for made in paths:
+                made.unlink()
+            raise ValueError(f"{path} is not a valid FMU:\n  " + "\n  ".join(problems))
+
+
+def documented_class(script: Path) -> str:
+    """Return the docstring of the class that ``script`` defines, without running it."""
+    body = ast.parse(script.read_text(encoding="utf-8")).body
+    return next(ast.get_docstring(node) or "" for node in body if isinstance(node, ast.ClassDef))
+
+
+def build_packages(folder: Path, made: Sequence[Path], sources: Path | None = None) -> list[Path]:
+    """Build the SSP packages of the FMI 2.0 FMUs in ``folder``, if all three are among ``made``.
+
+    Args:
+        folder: where the FMUs are and the packages go.
+        made: FMUs that were just built.
+        sources: also write what the packages say as readable files into this folder.
+
+    Raises:
+        ModelError: a package cannot be made or is not valid.
+    """
+    if not {folder / f"{name}.fmu" for name in FMUS} <= set(made):
+        return []  # made for platforms that FMI 2.0 does not know
+    try:
+        with unpacked(folder) as fmus:
+            written = write_packages(folder, fmus)
+            if sources is not None:
+                write_sources(sources, fmus)
+    except ValueError as problem:
+        raise ModelError(str(problem)) from None
+    return written
