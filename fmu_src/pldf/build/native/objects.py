@@ -2,7 +2,7 @@
 
 Run as a program, since numba reads the processor to compile for when it is imported::
 
-    python -m pldf.build.native.objects pldf.build.native.driving_function:MODEL FOLDER x86_64-linux ...
+    python -m pldf.build.native.objects MODULE:MODEL FOLDER x86_64-linux ...
 
 Only the entry points are visible in an object; they need nothing but a few functions of the C
 library, no Python and no numba at run time.
@@ -64,8 +64,14 @@ def compile_objects(model: str, targets: Sequence[str]) -> dict[str, bytes]:
 
 
 def _compile(model: str, folder: Path, targets: Sequence[str]) -> None:
-    # The same code whatever processor builds it, and none from somebody's cache.
-    generic = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "PLDF_CACHE": str(folder)}
+    # The same code whatever processor builds it, and none from somebody's cache. Where colorama is
+    # installed, numba paints its messages, in which the line of a kernel is looked for.
+    generic = {
+        "NUMBA_CPU_NAME": "generic",
+        "NUMBA_CPU_FEATURES": "",
+        "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1",
+        "PLDF_CACHE": str(folder),
+    }
     kept = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")}
     program = [sys.executable, "-W", "ignore", "-m", __name__, model, str(folder), *targets]
     done = subprocess.run(
