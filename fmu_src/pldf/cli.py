@@ -10,49 +10,44 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from typing import Final
 
 from . import __version__
-from .instance import ModelError
-
-COMMANDS: Final = (
-    "build",
-    "route",
-    "script",
-    "drive",
-    "learn",
-    "plot",
-    "profiles",
-    "study",
-    "analyse",
-    "export",
-)
+from .commands import COMMANDS
 
 
-def build_parser() -> argparse.ArgumentParser:
-    """Return the parser with every command's arguments."""
+def build_parser(chosen: str | None) -> argparse.ArgumentParser:
+    """Return the parser of all commands, with the arguments of the ``chosen`` one.
+
+    Only that one's module is imported: together they take a second, and ``--help`` needs none.
+    """
     parser = argparse.ArgumentParser(
         prog="pldf", description="A driving function that learns from its driver."
     )
     parser.add_argument("--version", action="version", version=f"pldf {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
-    for name in COMMANDS:
-        module = import_module(f".commands.{name}", __package__)
+    for name, summary in COMMANDS.items():
         command = commands.add_parser(
             name,
-            help=module.SUMMARY,
-            description=module.SUMMARY,
-            epilog=f"example:\n  {module.EXAMPLE}",
+            help=summary,
+            description=summary,
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
-        module.configure(command)
-        command.set_defaults(run=module.run)
+        if name == chosen:
+            module = import_module(f".commands.{name}", __package__)
+            command.epilog = f"example:\n  {module.EXAMPLE}"
+            module.configure(command)
+            command.set_defaults(run=module.run)
     return parser
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run ``pldf`` with ``arguments`` (default: those of the process); return the exit status."""
-    options = build_parser().parse_args(arguments)
+    arguments = sys.argv[1:] if arguments is None else arguments
+    # No option before the command takes a value, so the first word is the command.
+    chosen = next((word for word in arguments if not word.startswith("-")), None)
+    options = build_parser(chosen).parse_args(arguments)
+    from .instance import ModelError  # noqa: PLC0415 - brings numpy, which --help does not need
+
     try:
         options.run(options)
         sys.stdout.flush()

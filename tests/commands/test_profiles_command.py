@@ -25,7 +25,6 @@ def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp
     """Return a function that runs ``pldf profiles`` in a folder with the store ``store``."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("PLDF_PROFILE_STORE", raising=False)
-    monkeypatch.setattr(cli, "COMMANDS", ("profiles",))  # the other commands have their own tests
     store = ProfileStore("store")
     profile = example()
     for iteration in profile.iterations:
@@ -159,7 +158,7 @@ def test_export_is_exact_csv(run: Run, tmp_path: Path) -> None:
 def test_export_into_a_pipe_that_closes_early_is_no_error(tmp_path: Path) -> None:
     profile = replace(new_profile(), base_mps=np.full(20_000, 20.0))
     write_profile(tmp_path / "p.pldf", profile)
-    code = "import sys; from pldf import cli; cli.COMMANDS = ('profiles',); sys.exit(cli.main())"
+    code = "import sys; from pldf import cli; sys.exit(cli.main())"
     with subprocess.Popen(
         [sys.executable, "-c", code, "profiles", "export", str(tmp_path / "p.pldf")],
         stdout=subprocess.PIPE,

@@ -27,7 +27,6 @@ NO_SPEED = (
 def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Run:
     """Return a function that runs ``pldf route`` in an empty folder."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(cli, "COMMANDS", ("route",))  # the other commands have their own tests
 
     def runner(*arguments: str) -> tuple[int, str, str]:
         try:

@@ -26,7 +26,6 @@ SCRIPT = f"""# brake first
 def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Run:
     """Return a function that runs ``pldf script`` in a folder with ``my.csv``."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(cli, "COMMANDS", ("script",))  # the other commands have their own tests
     Path("my.csv").write_text(SCRIPT)
 
     def runner(*arguments: str) -> tuple[int, str, str]:

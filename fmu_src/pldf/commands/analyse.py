@@ -17,7 +17,6 @@ from ..analysis.published import DRIVERS, TESTS, published_means
 from ..analysis.questionnaire import SCALES
 from ..study.phases import choose_route
 
-SUMMARY: Final = "Analyse a study, real or simulated: rates, scores, tests, effect sizes, report."
 EXAMPLE: Final = (
     "pldf analyse out --report report.html\n"
     "  pldf analyse laboratory --route road.xodr --without P07 --figures paper --format pdf"

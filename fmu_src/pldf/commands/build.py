@@ -10,7 +10,6 @@ from typing import Final
 from ..cosim.platforms import PLATFORMS
 from ..instance import ModelError
 
-SUMMARY: Final = "Build the FMUs and the study's SSP packages, of Python source or native."
 EXAMPLE: Final = (
     "pldf build\n"
     "      all FMUs and packages of Python source, into dist\n"

@@ -29,7 +29,6 @@ from .coupled import (
     tell,
 )
 
-SUMMARY: Final = "Drive once with the coupled FMUs; write the recording and a picture of it."
 EXAMPLE: Final = (
     "pldf drive --phase A2 --store profiles --out out/A2.csv\n"
     "  pldf drive --phase B1 --store profiles --out out/B1.csv --set driver.wish.offset_mps=3\n"

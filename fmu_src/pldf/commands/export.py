@@ -9,7 +9,6 @@ from typing import Final
 from ..recordings.exports import write_mdf4, write_parquet
 from ..recordings.recording import read_recording
 
-SUMMARY: Final = "Write a recording as Parquet or ASAM MDF4, with units."
 EXAMPLE: Final = "pldf export out/recordings/B1.csv --parquet b1.parquet --mdf4 b1.mf4"
 
 

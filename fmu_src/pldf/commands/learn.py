@@ -14,7 +14,6 @@ from ..recordings.recording import read_recording
 from ..roads import open_route
 from .options import add_settings, apply_settings
 
-SUMMARY: Final = "Learn from the recording of a drive (SPAA) and write the next profile."
 EXAMPLE: Final = (
     "pldf learn --route study --recording out/B1.csv --out b1.pldf\n"
     "  pldf learn --route study --recording out/B2.csv --profile-in b1.pldf --out b2.pldf --json"

@@ -14,7 +14,6 @@ from ..recordings.interventions import rates_of
 from ..recordings.recording import Recording, completed, read_recording
 from ..study.phases import choose_route
 
-SUMMARY: Final = "Draw recordings: speed over distance, interventions, pedals."
 EXAMPLE: Final = (
     "pldf plot out/recordings/B1.csv --out b1.png\n"
     "  pldf plot out/recordings/A1.csv out/recordings/B2.csv --out compared.png"

@@ -25,7 +25,6 @@ from ..profiles.store import (
 )
 from ..profiles.stored_profile import Iteration
 
-SUMMARY: Final = "Show, export and roll back what was learned for drivers and routes."
 EXAMPLE: Final = """pldf profiles list --store profiles
   pldf profiles show profiles/driver-000017_route-0123456789abcdef.pldf --plot profile.png
   pldf profiles history 17 --store profiles

@@ -14,7 +14,6 @@ from ..kernel.units import KMH_PER_MPS
 from ..roads import fingerprint, open_route, write_route_csv
 from ..route_facts import BINDING_MPS, RouteFacts, route_facts
 
-SUMMARY: Final = "Show a route: limits, curves and base profile of an OpenDRIVE or CSV file."
 EXAMPLE: Final = "pldf route study --plot study.png"
 
 _LISTED_MAX: Final = 24

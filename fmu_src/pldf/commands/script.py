@@ -19,7 +19,6 @@ from vehicle_models.script_kernel import AT_POSITION, BRAKE, GAS, RESUME
 
 from ..cosim.prepared import SUFFIX, write_prepared_script
 
-SUMMARY: Final = "Show a driver script: what is pressed where or when, and for how long."
 EXAMPLE: Final = "pldf script my_drive.csv --export my_drive.prepared"
 
 _LISTED_MAX: Final = 40

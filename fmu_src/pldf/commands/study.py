@@ -28,7 +28,6 @@ from .coupled import (
 )
 from .participants import add_running, run_file
 
-SUMMARY: Final = "Drive a study: the participants of a study file, or one driver with figures."
 EXAMPLE: Final = (
     "pldf study studies/paper.toml --jobs 2\n"
     "  pldf study --out out_careful --set wish.offset_mps=-2 --seed 7"
