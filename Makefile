@@ -27,7 +27,7 @@ help:
 
 study: $(BUILT)
 	$(BIN)/pldf study --out out $(STUDY)
-	$(BIN)/pldf study studies/paper.toml --out out/paper --restart
+	$(BIN)/pldf study paper --out out/paper --restart
 	$(BIN)/pldf analyse out/paper --report out/paper/report.html
 
 test: $(READY)

@@ -115,7 +115,7 @@ def as_toml(fit: Fit, factors: FloatArray) -> str:
     """Return the distribution in the form of a study file, with the record of the fit."""
     lines = [
         "# Drivers fitted to system A by studies/fit_population.py; nothing else was looked at.",
-        "# The table [distribution] is that of studies/paper.toml.",
+        "# The table [distribution] is that of the packaged study, paper.",
         "",
         "[fit]",
         'rates = ["pedal", "set_speed", "combined"]',

@@ -11,6 +11,7 @@ import pytest
 from pldf.analysis.published import PUBLISHED
 from pldf.study.participants import Row
 from pldf.study.population import Distribution, read_distribution, sample_participants
+from pldf.study.study_file import study_path
 
 from studies import fit_population, long_run, predict_study
 
@@ -47,7 +48,7 @@ def test_the_fit_imports_neither_results_of_the_paper_nor_other_drives() -> None
 
 def test_fitted_numbers_are_those_of_the_paper_study_and_reach_the_targets() -> None:
     found = population()
-    paper = tomllib.loads((STUDIES / "paper.toml").read_text())
+    paper = tomllib.loads(study_path("paper").read_text())
     assert read_distribution(paper["distribution"]) == read_distribution(found["distribution"])
     fit = found["fit"]
     assert fit["targets_percent"] == pytest.approx([100 * rate for rate in PUBLISHED["A"]])

@@ -11,10 +11,10 @@ from pldf.study.participants import DRIVER_SIGNALS
 from pldf.study.participants_file import participants_csv, read_participants
 from pldf.study.phases import PHASES
 from pldf.study.population import sample_participants
-from pldf.study.study_file import Study, read_study
+from pldf.study.study_file import PACKAGED, Study, read_study, study_path
 from pldf.study.study_text import line_of
 
-PAPER = Path(__file__).parents[2] / "studies" / "paper.toml"
+PAPER = study_path("paper")
 
 
 def study(folder: Path, text: str) -> Study:
@@ -32,6 +32,20 @@ def test_the_papers_study() -> None:
     assert paper.settings.step_s == 0.01
     assert paper.out == Path("out/paper")
     assert paper.source == PAPER.read_text(encoding="utf-8")
+
+
+def test_a_file_of_ones_own_comes_before_a_packaged_study(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert study_path("paper").parent == PACKAGED
+    Path("paper").write_text("")
+    assert study_path("paper") == Path("paper")
+
+
+def test_an_unknown_study_names_the_packaged_ones() -> None:
+    with pytest.raises(ModelError, match=r"nowhere: no such study file; packaged are .*paper"):
+        study_path("nowhere")
 
 
 def test_an_empty_file_is_the_papers_study_with_other_people(tmp_path: Path) -> None:

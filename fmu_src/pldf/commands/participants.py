@@ -21,7 +21,7 @@ from rich.progress import (
 from ..cosim.fmu import Fmu
 from ..study.results import DRIVES, PARTICIPANTS, Results
 from ..study.runner import in_processes, on_cluster, run_missing
-from ..study.study_file import Study, read_study
+from ..study.study_file import Study, read_study, study_path
 from ..study.unit import Job
 from .coupled import chosen_fmus, stderr_progress
 
@@ -29,8 +29,9 @@ from .coupled import chosen_fmus, stderr_progress
 def add_running(parser: argparse.ArgumentParser) -> None:
     """Add the arguments that say where and how a study file's participants are driven."""
     parser.add_argument(
-        "file", nargs="?", type=Path, metavar="FILE",
-        help="study file (TOML); without it one driver drives the six drives, with figures",
+        "file", nargs="?", metavar="FILE",
+        help="study file (TOML), or 'paper', the paper's study; without it one driver drives the "
+        "six drives, with figures",
     )  # fmt: skip
     group = parser.add_argument_group("with FILE")
     group.add_argument(
@@ -48,7 +49,7 @@ def add_running(parser: argparse.ArgumentParser) -> None:
 
 def run_file(options: argparse.Namespace) -> None:
     """Drive what is missing of a study; print where to look."""
-    study = read_study(options.file)
+    study = read_study(study_path(options.file))
     out: Path = options.out or study.out
     with ExitStack() as stack:
         fmus = stack.enter_context(chosen_fmus(options)) if options.fmu else None

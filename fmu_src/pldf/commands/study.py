@@ -29,8 +29,7 @@ from .coupled import (
 from .participants import add_running, run_file
 
 EXAMPLE: Final = (
-    "pldf study studies/paper.toml --jobs 2\n"
-    "  pldf study --out out_careful --set wish.offset_mps=-2 --seed 7"
+    "pldf study paper --jobs 2\n  pldf study --out out_careful --set wish.offset_mps=-2 --seed 7"
 )
 
 # Arguments that a study file takes the place of.

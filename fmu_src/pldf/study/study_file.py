@@ -1,4 +1,4 @@
-"""The study file: who drives what, in which order, with which function (``studies/paper.toml``)."""
+"""The study file: who drives what, in which order, with which function (``studies/``)."""
 
 from __future__ import annotations
 
@@ -20,6 +20,8 @@ from .phases import PHASES, Phase, choose_route
 from .population import Distribution, read_distribution, sample_participants
 from .study_text import StudyText
 
+# Studies that come with the package, by name.
+PACKAGED: Final = Path(__file__).parent / "studies"
 COUNT_MAX: Final = 1_000_000
 PER_PHASE_MAX: Final = 1000
 ORDERS: Final = ("fixed", "counterbalanced")
@@ -49,6 +51,21 @@ class Study:
     participants: tuple[Participant, ...]
     out: Path
     source: str
+
+
+def study_path(name: str) -> Path:
+    """Return the study file that a person named: a file, or a packaged study such as ``paper``.
+
+    Raises:
+        ModelError: there is neither.
+    """
+    path, packaged = Path(name), PACKAGED / f"{name}.toml"
+    if path.exists():
+        return path
+    if packaged.is_file():
+        return packaged
+    known = ", ".join(sorted(file.stem for file in PACKAGED.glob("*.toml")))
+    raise ModelError(f"{name}: no such study file; packaged are {known}")
 
 
 def read_study(path: Path) -> Study:
