@@ -22,7 +22,8 @@ from matplotlib.figure import Figure
 from pldf.analysis.statistics import mean_interval
 from pldf.kernel.units import KMH_PER_MPS
 from pldf.report.figures import BLUE, GREEN, ORANGE, VERMILLION
-from pldf.study.participants import Participant, Row, StudySettings
+from pldf.study.drive_row import DriveRow
+from pldf.study.participants import Participant, StudySettings
 from pldf.study.phases import PHASES, choose_route
 from pldf.study.population import read_distribution, sample_participants
 from pldf.study.runner import in_processes
@@ -56,7 +57,7 @@ def long_run(
     return [summary(stretch, k + 1, rows) for k, rows in enumerate(by_drive)]
 
 
-def summary(stretch: float, drive: int, rows: Sequence[Row]) -> Summary:
+def summary(stretch: float, drive: int, rows: Sequence[DriveRow]) -> Summary:
     """Return means over people; errors have 95 % confidence intervals of the mean."""
     combined = mean_interval([100.0 * row.combined_rate for row in rows])
     error = mean_interval([KMH_PER_MPS * row.wish_error_mps for row in rows])

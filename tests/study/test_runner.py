@@ -16,10 +16,11 @@ from typing import Any
 import pytest
 from laboratory import files
 from pldf import cli
-from pldf.analysis.drives_table import COLUMNS, read_drives
+from pldf.analysis.drives_table import read_drives
 from pldf.build_version import build_version
 from pldf.instance import ModelError
 from pldf.recordings.recording import read_recording
+from pldf.study.drive_row import COLUMNS
 from pldf.study.participants import Participant
 from pldf.study.participants_file import read_participants
 from pldf.study.results import Results
@@ -88,7 +89,7 @@ def test_what_is_written(finished: Path, expected: dict[str, bytes]) -> None:
         for k in range(1, COUNT + 1)
         for position, phase in enumerate(("A2", "B1"), start=1)
     ]
-    assert all(drive.rates.combined > 0.0 for drive in drives if drive.phase == "A2")
+    assert all(drive.combined_rate > 0.0 for drive in drives if drive.phase == "A2")
     recording = read_recording(out / "recordings" / "P002_A2.csv")
     assert recording["time_s"][-1] == drives[2].duration_s
     assert read_participants(out / "participants.csv")[1].seed == (

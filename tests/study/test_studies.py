@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pldf.analysis.published import PUBLISHED
-from pldf.study.participants import Row
+from pldf.study.drive_row import DriveRow
 from pldf.study.population import Distribution, read_distribution, sample_participants
 from pldf.study.study_file import study_path
 
@@ -87,7 +87,7 @@ def test_studies_have_different_people_with_numbers_of_their_own() -> None:
 
 
 def test_long_run_summary() -> None:
-    rows = [Row(f"P{k}", "B2", "B", 2, 200.0, 0.1 * k, 0.0, 0.1 * k, k, 1.0) for k in range(3)]
+    rows = [DriveRow(f"P{k}", "B2", 0.1 * k, 0.0, 0.1 * k, 2, 200.0, k, 1.0) for k in range(3)]
     found = long_run.summary(0.5, 2, rows)
     assert found["combined_percent"] == pytest.approx(10.0)
     assert found["content_percent"] == pytest.approx(100.0 / 3.0)

@@ -21,8 +21,9 @@ from ..kernel.arrays import FloatArray
 from ..recordings.interventions import Rates
 from ..recordings.recording import Recording, completed, read_recording
 from ..roads import Route
+from ..study.drive_row import DriveRow
 from ..study.phases import PHASES, Phase
-from .drives_table import DriveRow, check_complete, check_phase, read_drives, row_of
+from .drives_table import check_complete, check_phase, read_drives, row_of
 from .questionnaire import Questionnaire, read_questionnaire
 from .statistics import Comparison, Interval, compare, mean_interval
 
@@ -186,7 +187,7 @@ def mean_rates(
     found: dict[str, list[float]] = {name: [] for name in participants}
     for drive in drives:
         if drive.phase in phases:
-            found[drive.participant].append(getattr(drive.rates, measure))
+            found[drive.participant].append(getattr(drive, f"{measure}_rate"))
     return np.array([float(np.mean(v)) if v else np.nan for v in found.values()])
 
 

@@ -5,52 +5,27 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 from math import isfinite, nan
 from pathlib import Path
 from typing import Final
 
 from ..instance import ModelError
-from ..recordings.interventions import Rates, pedal_interventions, rates_of
+from ..recordings.interventions import pedal_interventions, rates_of
 from ..recordings.recording import Recording
-from ..study.participants import ROW_FIELDS
+from ..study.drive_row import COLUMNS, DriveRow
 
-COLUMNS: Final = ROW_FIELDS
 NEEDED: Final = ("participant", "phase", "pedal_rate", "set_speed_rate", "combined_rate")
-
-
-@dataclass(frozen=True)
-class DriveRow:
-    """One drive of one participant; what is not known is NaN, or 0 for ``position``.
-
-    Attributes:
-        phase: the system and the number of the drive with it, such as A1.
-        position: place in the order of this participant's drives, from 1.
-        wish_error_mps: RMS of profile followed minus hidden wish, simulated drivers only.
-        where: file, and line if it has several drives.
-    """
-
-    participant: str
-    phase: str
-    rates: Rates
-    position: int = 0
-    duration_s: float = nan
-    interventions: float = nan
-    wish_error_mps: float = nan
-    where: str = ""
-
-    @property
-    def system(self) -> str:
-        """A (base function) or B (learned profile)."""
-        return self.phase[0]
 
 
 def row_of(participant: str, phase: str, recording: Recording, where: str) -> DriveRow:
     """Return what a recording with pedals and set-speed offset says about the drive."""
+    rates = rates_of(recording)
     return DriveRow(
         participant=participant,
         phase=phase,
-        rates=rates_of(recording),
+        pedal_rate=rates.pedal,
+        set_speed_rate=rates.set_speed,
+        combined_rate=rates.combined,
         duration_s=float(recording["time_s"][-1] - recording["time_s"][0]),
         interventions=len(pedal_interventions(recording)),
         where=where,
@@ -107,7 +82,9 @@ def _drive(where: str, row: dict[str, str]) -> DriveRow:
     return DriveRow(
         participant=participant,
         phase=phase,
-        rates=Rates(*shares),
+        pedal_rate=shares[0],
+        set_speed_rate=shares[1],
+        combined_rate=shares[2],
         position=int(_optional(where_drive, row, "position", 0.0)),
         duration_s=_optional(where_drive, row, "duration_s"),
         interventions=_optional(where_drive, row, "interventions"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Final
 
 from vehicle_models.driver_state import DriverState
@@ -14,6 +14,7 @@ from ..kernel.signals import Signal, signals_of
 from ..profiles.store import Iteration
 from ..recordings.recording import Recording
 from ..roads import Route
+from .drive_row import DriveRow
 from .phases import Phase
 
 SEED_MAX: Final = 999_999_999
@@ -78,39 +79,6 @@ class StudySettings:
     recorded: frozenset[str] = frozenset()
 
 
-@dataclass(frozen=True)
-class Row:
-    """One drive as a row of ``drives.csv``; shares are 0..1.
-
-    Attributes:
-        participant: id.
-        phase: A1 .. B3.
-        system: A or B.
-        position: place of the drive in this participant's order, from 1.
-        duration_s: time of the last sample.
-        pedal_rate: share of the time with a pedal intervention.
-        set_speed_rate: share of the time with a set speed set by the driver in this drive.
-        combined_rate: share of the time with either.
-        interventions: number of pedal interventions.
-        wish_error_mps: root mean square over the route's metres of the profile followed minus the
-            driver's hidden wish.
-    """
-
-    participant: str
-    phase: str
-    system: str
-    position: int
-    duration_s: float
-    pedal_rate: float
-    set_speed_rate: float
-    combined_rate: float
-    interventions: int
-    wish_error_mps: float
-
-
-ROW_FIELDS: Final = tuple(f.name for f in fields(Row))
-
-
 @dataclass(frozen=True, eq=False)
 class DriveResult:
     """One drive of one participant.
@@ -121,7 +89,7 @@ class DriveResult:
         iteration: what the drive taught; None if the phase does not learn.
     """
 
-    row: Row
+    row: DriveRow
     recording: Recording | None = None
     iteration: Iteration | None = None
 

@@ -11,7 +11,6 @@ import hashlib
 import json
 import platform
 import shutil
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
@@ -24,7 +23,8 @@ from ..files.disk import replace_file
 from ..instance import Instance, ModelError
 from ..kernel.signals import signals_of
 from ..roads import fingerprint, route_arrays
-from .participants import ROW_FIELDS, Participant
+from .drive_row import COLUMNS
+from .participants import Participant
 from .participants_file import participants_csv
 from .simulation import COMPILED_MODULES, prepared
 from .study_file import Study
@@ -87,13 +87,13 @@ class Results:
             path = self.out / name
             path.parent.mkdir(exist_ok=True)
             replace_file(path, content)
-        rows = json.dumps([list(asdict(row).values()) for row in done.rows])
+        rows = json.dumps([row.cells for row in done.rows])
         replace_file(self.out / _PARTS / f"{done.participant}.json", rows.encode())
 
     def merge(self) -> None:
         """Make the tables from all parts and take the parts away."""
         if not self.complete:
-            lines = [",".join(ROW_FIELDS)]
+            lines = [",".join(COLUMNS)]
             for one in self.study.participants:
                 rows = json.loads((self.out / _PARTS / f"{one.id}.json").read_bytes())
                 lines += [",".join(_text(value) for value in row) for row in rows]

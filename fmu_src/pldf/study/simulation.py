@@ -35,8 +35,9 @@ from ..recordings.recording import COLUMNS, Recording
 from ..roads import fingerprint, route_arrays
 from ..route_facts import route_facts
 from . import loop
+from .drive_row import DriveRow
 from .loop import ARRIVED, STOOD_STILL, Ends, Models, Rows, World
-from .participants import DriveResult, Participant, Row, StudySettings, order_of, seed_of
+from .participants import DriveResult, Participant, StudySettings, order_of, seed_of
 from .phases import HANDS_OFF, PHASES, PREFERENCE, Phase
 
 Packed = NDArray[np.void]
@@ -206,13 +207,12 @@ class Outcome(NamedTuple):
     profile: ProfileArrays
 
 
-def row_of(person: Person, phase: Phase, position: int, outcome: Outcome) -> Row:
+def row_of(person: Person, phase: Phase, position: int, outcome: Outcome) -> DriveRow:
     """Return the row of one drive."""
     missed = np.asarray(outcome.profile.learned_mps) - np.asarray(person.wish.wish_mps)
-    return Row(
+    return DriveRow(
         participant=person.participant.id,
         phase=phase.name,
-        system=phase.name[0],
         position=position,
         duration_s=outcome.duration_s,
         pedal_rate=outcome.outputs.rate_pedal,

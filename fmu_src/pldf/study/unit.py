@@ -9,7 +9,8 @@ from ..cosim.fmu import Fmu
 from ..profiles.profile_file import encode
 from ..profiles.store import ProfileStore
 from ..recordings.recording import recording_csv
-from .participants import DriveResult, Participant, Row, StudySettings
+from .drive_row import DriveRow
+from .participants import DriveResult, Participant, StudySettings
 from .simulation import prepared, simulate_participant
 from .through_fmus import drive_participant
 
@@ -38,7 +39,7 @@ class Done:
     """
 
     participant: str
-    rows: tuple[Row, ...]
+    rows: tuple[DriveRow, ...]
     files: dict[str, bytes]
 
 
