@@ -15,7 +15,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import fields
 from functools import cache
-from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, Final
 
@@ -23,6 +22,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from .cache import user_cache
 from .kernel import (
     bounds,
     codes,
@@ -132,15 +132,6 @@ def digest(modules: Sequence[ModuleType]) -> str:
     for module in modules:
         found.update(inspect.getsource(module).encode())
     return found.hexdigest()[:16]
-
-
-def user_cache() -> Path:
-    """Return the folder for what can be made again: compiled kernels."""
-    if "PLDF_CACHE" in os.environ:
-        return Path(os.environ["PLDF_CACHE"])
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", "~")).expanduser() / "pldf"
-    return Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")).expanduser() / "pldf"
 
 
 def pack(record: Any) -> NDArray[np.void]:

@@ -47,15 +47,15 @@ class Recipe:
 def build(recipe: Recipe, out: Path) -> Path:
     """Build the FMU into folder ``out`` and return its path; ValueError if it cannot be packed."""
     out.mkdir(parents=True, exist_ok=True)
-    identity = digest(_sources(recipe))
+    name = identity(recipe)
     with tempfile.TemporaryDirectory(prefix="fmu_") as temporary:
         stage = Path(temporary, "stage")
         stage.mkdir()
-        names = {p.folder.name: f"{p.folder.name}_{identity}" for p in recipe.packages}
+        names = {p.folder.name: f"{p.folder.name}_{name}" for p in recipe.packages}
         for package in recipe.packages:
             folder = package.folder
             copy_package(folder, stage / names[folder.name], package.skip, names)
-        script = stage / f"{recipe.script.stem}_{identity}.py"
+        script = stage / f"{recipe.script.stem}_{name}.py"
         copy_file(recipe.script, script, names)
         with _importing_from(stage, script.stem, names):
             slave = slave_of(script.stem)
@@ -67,12 +67,13 @@ def build(recipe: Recipe, out: Path) -> Path:
     return path
 
 
-def _sources(recipe: Recipe) -> dict[str, Path]:
+def identity(recipe: Recipe) -> str:
+    """Return hexadecimal digits of everything that is packed."""
     files = {recipe.script.name: recipe.script}
     for package in recipe.packages:
         for path in packed_files(package.folder, package.skip):
             files[f"{package.folder.name}/{path}"] = package.folder / path
-    return files
+    return digest(files)
 
 
 def slave_of(module: str) -> ModelSlave:

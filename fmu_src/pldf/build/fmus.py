@@ -38,10 +38,13 @@ PLDF: Final = Package(
     HERE.parent,
     # Research tools, and what builds FMUs: none of it runs inside one.
     skip=(
+        "__init__.pyi",
         "__main__.py",
         "analysis",
+        "api.py",
         "build",
         "build_version.py",
+        "cache.py",
         "cli.py",
         "commands",
         "compiled.py",
@@ -50,6 +53,7 @@ PLDF: Final = Package(
         "report",
         "roads/make_study_road.py",
         "route_facts.py",
+        "settings.py",
         "study",
     ),
 )

@@ -6,26 +6,22 @@ import argparse
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeElapsedColumn
 
-from ..cosim.fmu import Fmu, Said, Value
-from ..cosim.master import STEP_S, connections, unpacked
-from ..cosim.which_fmus import KINDS, NATIVE_FOLDER, USUAL_FOLDER, choose_fmus
+from ..build.first_use import fmus_to_drive
+from ..cosim import settable
+from ..cosim.fmu import Fmu, Said
+from ..cosim.master import STEP_S, unpacked
+from ..cosim.settable import Chosen
+from ..cosim.which_fmus import KINDS, NATIVE_FOLDER, USUAL_FOLDER
 from ..instance import ModelError
-from .options import parse_value
-
-_INTEGER_MAX: Final = 2**31 - 1  # of an FMI Integer
-_NEAR_MAX: Final = 3
+from .options import split_settings
 
 NATIVE_IF_GOOD: Final = "native, if they are there for this platform and up to date"
-
-# part -> variable -> value
-Chosen = dict[str, dict[str, Value]]
 
 
 def add_coupling(parser: argparse.ArgumentParser) -> None:
@@ -69,7 +65,7 @@ def add_fmu(parser: argparse.ArgumentParser, usual: str) -> None:
 @contextmanager
 def chosen_fmus(options: argparse.Namespace) -> Iterator[dict[str, Fmu]]:
     """Unpack the FMUs that ``--fmus`` and ``--fmu`` ask for; say which they are."""
-    choice = choose_fmus(options.fmus, options.fmu)
+    choice = fmus_to_drive(options.fmus, options.fmu)
     for note in choice.notes:
         print(f"pldf: {note}", file=sys.stderr)
     with unpacked(choice.folder) as fmus:
@@ -79,50 +75,11 @@ def chosen_fmus(options: argparse.Namespace) -> Iterator[dict[str, Fmu]]:
 
 def chosen_values(fmus: Mapping[str, Fmu], settings: list[str]) -> Chosen:
     """Return the values of ``--set`` by part and variable; ModelError if one cannot be set."""
-    settable = _settable(fmus)
-    chosen: Chosen = {}
-    for setting in settings:
-        name, equals, text = setting.partition("=")
-        places = settable.get(name, [])
-        if not places or not equals:
-            raise ModelError(f"--set {setting}: {_way_out(name, settable, equals)}")
-        if len(places) > 1:
-            choices = ", ".join(f"{part}.{variable}" for part, variable in places)
-            raise ModelError(f"--set {setting}: more than one FMU has it, write one of {choices}")
-        part, variable = places[0]
-        chosen.setdefault(part, {})[variable] = _value(fmus[part], variable, text)
-    return chosen
-
-
-def _settable(fmus: Mapping[str, Fmu]) -> dict[str, list[tuple[str, str]]]:
-    """Return (part, variable) by every name that a person may use; more than one: ambiguous."""
-    fed = {connection.target for connection in connections(fmus)}
-    names: dict[str, list[tuple[str, str]]] = {}
-    for part, fmu in fmus.items():
-        for signal in (*fmu.named("parameter"), *fmu.named("input")):
-            place = (part, signal.name)
-            if place not in fed:
-                names.setdefault(signal.name, []).append(place)
-                names[f"{part}.{signal.name}"] = [place]
-    return names
-
-
-def _way_out(name: str, settable: Mapping[str, object], equals: str) -> str:
-    if name in settable and not equals:
-        return f"write {name}=VALUE"
-    near = get_close_matches(name, settable, n=_NEAR_MAX, cutoff=0.5)
-    hint = f"did you mean {', '.join(near)}?" if near else "write e.g. pldf.learning.weight=0.4"
-    return f"no such parameter; {hint}"
-
-
-def _value(fmu: Fmu, variable: str, text: str) -> Value:
-    signal = fmu.signals[variable]
-    if signal.kind == "String":
-        return text
-    value = parse_value(signal, text)
-    if signal.kind != "Real" and abs(value) > _INTEGER_MAX:
-        raise ModelError(f"{variable} = {text}: it must lie within {_INTEGER_MAX} of 0")
-    return value
+    given = split_settings(settings)
+    try:
+        return settable.chosen_values(fmus, given)
+    except ModelError as problem:
+        raise ModelError(f"--set {problem}") from None
 
 
 def stderr_progress(*columns: ProgressColumn) -> Progress:

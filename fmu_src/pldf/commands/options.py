@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from difflib import get_close_matches
 from typing import Any
 
 from ..instance import ModelError
-from ..kernel.signals import Signal, signals_of
+from ..settings import set_parameters
 
 
 def add_settings(parser: argparse.ArgumentParser) -> None:
@@ -22,26 +21,20 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def split_settings(settings: list[str]) -> dict[str, str]:
+    """Return values by name from ``NAME=VALUE`` texts; ModelError if one is no such text."""
+    given = {}
+    for setting in settings:
+        name, equals, given[name] = setting.partition("=")
+        if not equals:
+            raise ModelError(f"--set {setting}: write {name}=VALUE")
+    return given
+
+
 def apply_settings(record: Any, settings: list[str]) -> None:
     """Set parameters of ``record`` from ``NAME=VALUE`` texts; ModelError if one cannot be."""
-    parameters = {s.name: s for s in signals_of(record) if s.causality == "parameter"}
-    for setting in settings:
-        name, equals, text = setting.partition("=")
-        if name not in parameters or not equals:
-            near = ", ".join(get_close_matches(name, parameters, cutoff=0.3)) or "see docs"
-            raise ModelError(f"--set {setting}: no such parameter; write NAME=VALUE, e.g. {near}")
-        setattr(record, parameters[name].field, parse_value(parameters[name], text))
-
-
-def parse_value(signal: Signal, text: str) -> float | int:
-    """Return ``text`` as a value of ``signal``; enumerations by item, Booleans as true or false."""
-    words = {"true": 1, "false": 0} if signal.kind == "Boolean" else {}
-    if signal.enumeration is not None:
-        words = {item.lower(): code for code, item in enumerate(signal.enumeration.items)}
+    given = split_settings(settings)
     try:
-        if text.lower() in words:
-            return words[text.lower()]
-        return float(text) if signal.kind == "Real" else int(text)
-    except ValueError:
-        allowed = ", ".join(words) or ("a number" if signal.kind == "Real" else "a whole number")
-        raise ModelError(f"{signal.name} = {text}: it must be {allowed}") from None
+        set_parameters(record, given)
+    except ModelError as problem:
+        raise ModelError(f"--set {problem}") from None

@@ -51,13 +51,18 @@ def read_route(
 def open_route(
     name: str, *, start_road: str | None = None, default_limit_mps: float | None = None
 ) -> Route:
-    """Return the route that a person named: ``study`` for the shipped road, else a file.
+    """Return the route that a person named.
+
+    Args:
+        name: a file, ``study`` for the shipped road, or the number of a packed route.
+        start_road: as for ``read_route``.
+        default_limit_mps: as for ``read_route``.
 
     Raises:
-        ModelError: as ``read_route``.
+        ModelError: as ``read_route`` and ``packed_route``.
     """
-    if name == "study" and not Path(name).exists():
-        return packed_route(STUDY_ROAD_ID)
+    if not Path(name).exists() and (name == "study" or name.isdigit()):
+        return packed_route(STUDY_ROAD_ID if name == "study" else int(name))
     return read_route(name, start_road=start_road, default_limit_mps=default_limit_mps)
 
 

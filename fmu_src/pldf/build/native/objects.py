@@ -28,7 +28,8 @@ from typing import Any, Final
 import llvmlite.binding as llvm  # type: ignore[import-untyped]
 import numba
 
-from ...compiled import OPTIONS, compile_modules, pack, user_cache
+from ...cache import user_cache
+from ...compiled import OPTIONS, compile_modules, pack
 from ...cosim.platforms import TARGETS
 from ...files.disk import replace_file
 from .symbols import needed_by_object

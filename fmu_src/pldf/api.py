@@ -1,0 +1,205 @@
+"""The front door: what the commands do, for programs. ``import pldf`` offers all of it.
+
+Each function imports what it needs when it is called: who reads a route waits for no compiler.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .instance import ModelError
+from .kernel.arrays import FloatArray
+from .roads import Route
+from .settings import Given, set_parameters
+
+if TYPE_CHECKING:
+    from .analysis.analysis import Analysis
+    from .cosim.master import Drive
+    from .profiles.store import StoredProfile
+    from .recordings.offline import Learned
+    from .recordings.recording import Recording
+
+PathLike = str | os.PathLike[str]
+
+# ruff: noqa: PLC0415 - see above
+
+
+def base_profile(route: Route) -> FloatArray:
+    """Return the speed in m/s that is planned from limits and curves alone, with the defaults.
+
+    Args:
+        route: from ``open_route``.
+
+    Returns:
+        The speed at every whole metre of the route: ``route.nodes`` values.
+    """
+    from .route_facts import route_facts
+
+    return route_facts(route).base_mps
+
+
+def learn(
+    recording: Recording,
+    route: Route,
+    *,
+    profile: StoredProfile | None = None,
+    parameters: Mapping[str, Given] | None = None,
+) -> Learned:
+    """Learn from the recording of a drive (SPAA), as ``pldf learn`` does.
+
+    Args:
+        recording: from ``read_recording`` or ``drive``; absent columns are derived.
+        route: the route driven.
+        profile: what the drive followed; None: the base profile.
+        parameters: of the driving function, by FMI name, e.g. ``{"learning.weight": 0.4}``.
+
+    Returns:
+        The profile for the next drive in ``.profile``, what is new in it in ``.iteration``.
+
+    Raises:
+        ModelError: the recording is not on the route, the profile belongs to another route, or
+            there is no such parameter or value.
+    """
+    from .function import DrivingFunction
+    from .recordings.offline import learn_from
+
+    function = DrivingFunction()
+    set_parameters(function.record, parameters or {})
+    return learn_from(recording, route, profile, function)
+
+
+def drive(  # noqa: PLR0913 - the options of a drive, all by name
+    phase: str = "A2",
+    *,
+    route: str = "study",
+    store: PathLike | None = None,
+    driver_id: int = 1,
+    seed: int = 1,
+    fmus: PathLike | None = None,
+    parameters: Mapping[str, Given] | None = None,
+) -> Drive:
+    """Drive once with the three coupled FMUs, as ``pldf drive`` does.
+
+    Args:
+        phase: drive of the study, A1 to B3: which profile is driven, whether the driver intervenes
+            and whether the drive is learned from.
+        route: a route file, ``study``, or the number of a packed route.
+        store: folder of learned profiles; None: the environment variable ``PLDF_PROFILE_STORE``,
+            and if there is none, nothing is loaded or kept.
+        driver_id: whose profile.
+        seed: of the driver's small irregularities.
+        fmus: folder of the FMUs; None: ``dist``, and if nobody has built any, they are built into
+            the user's cache.
+        parameters: of the FMUs, as ``--set`` takes them, e.g. ``{"wish.offset_mps": 2.0}``.
+
+    Returns:
+        The recording, and the outputs of the driving function at the end.
+
+    Raises:
+        ModelError: a name or value is unknown, an FMU reported an error, or the vehicle did not
+            reach the end of the route.
+    """
+    from .build.first_use import fmus_to_drive
+    from .cosim import master, settable
+    from .cosim.which_fmus import USUAL_FOLDER
+    from .study.phases import PHASES, Setting, choose_route, values_of
+
+    if phase not in PHASES:
+        raise ModelError(f"phase {phase}: there are {', '.join(PHASES)}")
+    chosen_route, road = choose_route(route)
+    choice = fmus_to_drive(Path(fmus) if fmus is not None else USUAL_FOLDER)
+    with master.unpacked(choice.folder) as unpacked:
+        setting = Setting(
+            chosen_route,
+            road,
+            driver_id,
+            seed,
+            None if store is None else Path(store),
+            more=settable.chosen_values(unpacked, parameters or {}),
+        )
+        values = values_of(PHASES[phase], setting)
+        driven = master.drive(unpacked, values, setting.course(lambda _: None))
+    for said in driven.said:
+        if said.level == "error":
+            raise ModelError(f"{said.fmu}: {said.text}")
+    if not driven.arrived:
+        raise ModelError(f"the drive was given up: the vehicle {driven.ending}")
+    return driven
+
+
+def run_study(
+    file: PathLike | None = None,
+    out: PathLike | None = None,
+    *,
+    jobs: int | None = None,
+    restart: bool = False,
+) -> Path:
+    """Drive a study, as ``pldf study`` does; what was driven before is not driven again.
+
+    On Windows and macOS a script that calls this with more than one job needs the usual
+    ``if __name__ == "__main__":``, because the other processes import it.
+
+    Args:
+        file: study file (TOML), or ``paper``, the paper's study; None: one driver through the FMUs.
+        out: folder of the results; None: the study's own.
+        jobs: processes; None: one for each core. The results are the same.
+        restart: forget what was driven before.
+
+    Returns:
+        The folder of the results, for ``analyse``.
+
+    Raises:
+        ModelError: the study file cannot be used, the folder holds another study, or a drive
+            failed.
+    """
+    if file is None:
+        return _one_driver(Path(out or "out"))
+    from .study.results import Results
+    from .study.runner import in_processes, run_missing
+    from .study.study_file import read_study, study_path
+    from .study.unit import Job
+
+    study = read_study(study_path(os.fspath(file)))
+    folder = Path(out or study.out)
+    results = Results(study, folder, through="kernels")
+    results.open(restart)
+    run = in_processes(jobs or os.cpu_count() or 1)
+    run_missing(results, Job(study.settings), run, lambda _: None)
+    return folder
+
+
+def _one_driver(out: Path) -> Path:
+    from .build.first_use import fmus_to_drive
+    from .cosim.master import unpacked
+    from .study import run
+    from .study.phases import PHASES, Setting, choose_route
+
+    setting = Setting(*choose_route("study"), store=out / "profiles")
+    with unpacked(fmus_to_drive().folder) as fmus:
+        run.run_study(fmus, [*PHASES.values()], setting, out, lambda _, __: None)
+    return out
+
+
+def analyse(
+    folder: PathLike, *, route: Route | None = None, without: Collection[str] = ()
+) -> Analysis:
+    """Analyse a study, real or simulated, as ``pldf analyse`` does.
+
+    Args:
+        folder: with ``drives.csv`` or ``recordings/PARTICIPANT_PHASE.csv``, and
+            ``questionnaire.csv`` if there is one.
+        route: the route driven; needed if the recordings lack columns.
+        without: participants to leave out.
+
+    Returns:
+        Rates, scores, tests and effect sizes.
+
+    Raises:
+        ModelError: a file cannot be used, or there are too few participants.
+    """
+    from .analysis import analysis
+
+    return analysis.analyse(analysis.Source(Path(folder), route, frozenset(without)))

@@ -1,0 +1,85 @@
+"""The FMUs that drive, built on first use where nobody has built any."""
+
+from __future__ import annotations
+
+import sys
+from hashlib import sha256
+from importlib.metadata import version
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Final
+
+from ..build_version import build_version
+from ..cache import CACHE_VARIABLE, user_cache
+from ..cosim.master import PARTS
+from ..cosim.which_fmus import NATIVE_FOLDER, USUAL_FOLDER, Choice, Kind, choose_fmus
+from ..instance import ModelError
+from . import builder, fmus
+
+_DIGITS: Final = 10
+
+
+def fmus_to_drive(folder: Path = USUAL_FOLDER, kind: Kind | None = None) -> Choice:
+    """Choose FMUs as ``choose_fmus`` does; build Python FMUs if none were ever built or named.
+
+    Says on stderr that it builds. What is built stays in the user's cache.
+
+    Raises:
+        ModelError: as ``choose_fmus``, or the FMUs cannot be built or kept.
+    """
+    if folder != USUAL_FOLDER or kind == "native" or _any_in(folder):
+        return choose_fmus(folder, kind)
+    return Choice("python", _built_once(folder))
+
+
+def _any_in(folder: Path) -> bool:
+    """Tell whether somebody has built here, even if not all that is needed."""
+    places = (folder, folder / NATIVE_FOLDER)
+    return any((place / f"{name}.fmu").exists() for place in places for name in PARTS.values())
+
+
+def cached_folder() -> Path:
+    """Return where the FMUs of the sources installed lie in the user's cache, or will."""
+    made_of = sha256(version("pythonfmu").encode())
+    for recipe in fmus.FMUS.values():
+        made_of.update(builder.identity(recipe).encode())
+    return user_cache() / f"fmus-{build_version()}-{made_of.hexdigest()[:_DIGITS]}"
+
+
+def _built_once(absent: Path) -> Path:
+    """Return ``cached_folder`` with the FMUs in it; none were in ``absent``."""
+    target = cached_folder()
+    if target.is_dir():
+        return target
+    print(
+        f"pldf: no FMUs in {absent}; building them for this and later drives into {target}",
+        file=sys.stderr,
+    )
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with TemporaryDirectory(dir=target.parent, prefix="fmus-building-") as place:
+            made = Path(place, target.name)
+            for name in fmus.FMUS:
+                fmus.build_python(name, made, lambda _: None)
+            put(made, target)
+    except OSError as problem:
+        raise ModelError(
+            f"{target}: the FMUs cannot be kept there ({problem.strerror}); set {CACHE_VARIABLE} "
+            "to a folder that can be written, or run 'pldf build'"
+        ) from None
+    except ValueError as problem:
+        raise ModelError(f"the FMUs cannot be built: {problem}") from None
+    return target
+
+
+def put(made: Path, target: Path) -> None:
+    """Give a complete folder its name, unless another process was quicker: theirs is the same.
+
+    Raises:
+        OSError: it cannot be moved there, for another reason.
+    """
+    try:
+        made.rename(target)
+    except OSError:
+        if not target.is_dir():
+            raise
