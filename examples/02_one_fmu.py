@@ -1,8 +1,8 @@
 """One FMU in some 30 lines of fmpy: the driving function drives a point on a road of our own.
 
-The simulator here knows where its car is, in x and y, and nothing of arc lengths. You see time, place,
-speed and why it is driven: along the straight at 70 km/h, slower through the loop, which crosses the
-straight, and at 50 km/h behind the sign at 950 m.
+The simulator here knows where its car is, in x and y, and nothing of arc lengths. You see time,
+place, speed and why it is driven: along the straight at 70 km/h, slower through the loop, which
+crosses the straight, and at 50 km/h behind the sign at 950 m.
 
     pldf build --only AdaptivePLDF
     python 02_one_fmu.py                     # or name an FMU and its road:

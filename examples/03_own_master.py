@@ -1,9 +1,9 @@
 """The three FMUs in a master loop of our own: one driver, two drives, what was learned in between.
 
-An input is fed by the output of the same name; an input ``vehicle.NAME`` by the vehicle's ``NAME``. All
-three step with the values of the last communication point. You see the share of the time in which the
-driver's pedals and lever corrected the function: first with the base profile (A2), then with what that
-drive taught (B1). It is ``pldf drive`` in one page.
+An input is fed by the output of the same name; an input ``vehicle.NAME`` by the vehicle's ``NAME``.
+All three step with the values of the last communication point. You see the share of the time in
+which the driver's pedals and lever corrected the function: first with the base profile (A2), then
+with what that drive taught (B1). It is ``pldf drive`` in one page.
 
     pldf build
     python 03_own_master.py                  # or name the FMUs' folder and the road:
@@ -110,4 +110,4 @@ if __name__ == "__main__":
             parts = [Part(f"{fmus}/{model}.fmu", f"{store}/{phase}/{model}") for model in MODELS]
             same = {"route_file": str(Path(route_file).resolve()), "profile_store": store}
             pedal, set_speed, combined = drive(parts, {**same, **settings})
-            print(f"{phase}  pedal {pedal:.1f} %  set speed {set_speed:.1f} %  either {combined:.1f} %")
+            print(f"{phase}: pedal {pedal:.1f} %, lever {set_speed:.1f} %, either {combined:.1f} %")
