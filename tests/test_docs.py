@@ -12,6 +12,7 @@ from importlib.util import find_spec
 from itertools import takewhile
 from pathlib import Path
 
+import pldf
 import pytest
 from pldf.commands import COMMANDS
 from pldf.cosim.fmu import Fmu
@@ -122,6 +123,11 @@ def exists(name: str) -> bool:
         else:
             return False
     return True
+
+
+def test_the_whole_front_door_is_documented() -> None:
+    shown = re.findall(r"^::: (\S+)$", text_of(ROOT / "docs" / "api.md"), re.MULTILINE)
+    assert sorted(name.split(".")[-1] for name in shown) == sorted(pldf.__all__)
 
 
 @cache

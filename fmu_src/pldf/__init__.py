@@ -7,7 +7,7 @@ who reads a route waits for no co-simulation. ``__init__.pyi`` tells type checke
 from importlib import import_module
 from typing import Any
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 # Where each name of the front door lives.
 _PLACES = {
