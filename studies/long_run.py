@@ -15,13 +15,13 @@ import sys
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
-from matplotlib.figure import Figure
+from pldf.analysis.long_run import read_long_run
 from pldf.analysis.statistics import mean_interval
 from pldf.kernel.units import KMH_PER_MPS
-from pldf.report.figures import BLUE, GREEN, ORANGE, VERMILLION
+from pldf.report import figures, paper
 from pldf.study.drive_row import DriveRow
 from pldf.study.participants import Participant, StudySettings
 from pldf.study.phases import PHASES, choose_route
@@ -32,13 +32,6 @@ from pldf.study.unit import Job
 Summary = dict[str, float]
 
 STRETCH: Final = (0.0, 0.25, 0.5, 1.0)
-STYLES: Final = ((VERMILLION, "-", "o"), (ORANGE, "--", "s"), (BLUE, "-", "^"), (GREEN, ":", "D"))
-COLUMNS: Final = {
-    "combined_percent": "Combined rate (%)",
-    "pedal_percent": "Pedal rate (%)",
-    "content_percent": "Drivers who did\nnothing (%)",
-    "wish_error_kmh": "Profile minus wish,\nRMS (km/h)",
-}
 
 
 def long_run(
@@ -77,37 +70,6 @@ def summary(stretch: float, drive: int, rows: Sequence[DriveRow]) -> Summary:
     }
 
 
-def draw(summaries: Sequence[Summary]) -> Figure:
-    """Draw four panels over the drives, one line per stretch factor."""
-    figure = Figure(figsize=(9.0, 5.6), layout="constrained")
-    axes = figure.subplots(2, 2, sharex=True)
-    factors = sorted({row["stretch_factor"] for row in summaries})
-    for axis, (column, label) in zip(axes.flat, COLUMNS.items(), strict=True):
-        for factor, (colour, line, marker) in zip(factors, STYLES, strict=False):
-            rows = [row for row in summaries if row["stretch_factor"] == factor]
-            axis.plot(
-                [row["drive"] for row in rows], [row[column] for row in rows], line,
-                color=colour, marker=marker, markersize=3, linewidth=1.3, label=f"{factor:g}",
-            )  # fmt: skip
-        _finish(axis, label)
-    for axis in axes[-1]:
-        axis.set_xlabel("Drive")
-    handles, labels = axes.flat[0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, title="Stretch factor", loc="outside upper center", ncols=len(labels),
-        frameon=False,
-    )  # fmt: skip
-    return figure
-
-
-def _finish(axis: Any, label: str) -> None:
-    axis.set_ylabel(label)
-    axis.set_ylim(bottom=0.0)
-    axis.grid(True, color="#DDDDDD", linewidth=0.6)
-    axis.set_axisbelow(True)
-    axis.spines[["top", "right"]].set_visible(False)
-
-
 def main() -> int:
     """Drive, write, draw."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -136,8 +98,9 @@ def write(summaries: Sequence[Summary], folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     lines = [",".join(summaries[0])]
     lines += [",".join(f"{value:.6g}" for value in row.values()) for row in summaries]
-    (folder / "long_run.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    draw(summaries).savefig(folder / "long_run.png", dpi=110)
+    table = folder / "long_run.csv"
+    table.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    paper.save(figures.long_run(read_long_run(table)), folder / "long_run.png")
 
 
 if __name__ == "__main__":

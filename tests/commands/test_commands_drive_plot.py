@@ -11,7 +11,7 @@ import pytest
 from pldf import cli
 from pldf.commands.plot import names_of
 from pldf.recordings.recording import Recording, read_recording, write_recording
-from pldf.report.figures import KM, draw_drive, figure_of
+from sample_recording import sample_recording as sample
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -177,34 +177,6 @@ def test_a_drive_that_is_given_up_still_leaves_its_recording(drive: Run) -> None
     assert "rates" in out
 
 
-def sample(shift: float = 0.0) -> Recording:
-    """Return 100 s with gas from 20 s, brake from 50 s, and an offset from 60 s."""
-    time = np.arange(0.0, 100.0, 0.1)
-    mode = np.full(len(time), 2.0)
-    mode[200:300] = 3.0
-    mode[500:600] = 1.0
-    brake = np.zeros(len(time))
-    brake[500:550] = 0.4
-    gas = np.where(mode == 3.0, 0.5, 0.0)
-    limit = np.full(len(time), 25.0)
-    columns = {
-        "time_s": time,
-        "s_m": 20.0 * time,
-        "speed_mps": 20.0 + shift + np.sin(time / 5.0),
-        "acceleration_mps2": np.cos(time / 5.0) / 5.0,
-        "mode": mode,
-        "gas_pedal": gas,
-        "brake_pedal": brake,
-        "set_speed_mps": limit,
-        "set_speed_offset_mps": np.where(time >= 60.0, 2.0, 0.0),
-        "profile_mps": np.full(len(time), 22.0 + shift),
-        "base_mps": np.full(len(time), 22.0),
-        "limit_mps": limit,
-        "eligible": np.ones(len(time)),
-    }
-    return Recording(columns)
-
-
 def test_a_picture_of_one_recording(run: Run) -> None:
     write_recording("a.csv", sample())
     assert run("plot", "a.csv") == (0, "picture  a.png\n", "")
@@ -215,38 +187,10 @@ def test_a_picture_of_one_recording(run: Run) -> None:
     assert matplotlib.image.imread("a.png").shape[1] == 1650
 
 
-def test_interventions_are_shaded_where_they_are() -> None:
-    figure = figure_of({"a": sample(1.0)}, "title")
-    speed, pedals = figure.axes
-    spans = sorted(
-        (round(p.get_x() / KM), round((p.get_x() + p.get_width()) / KM)) for p in speed.patches
-    )
-    assert spans == [(400, 600), (1000, 1200), (1200, 1998)]  # gas, brake, set speed
-    labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == [
-        "Legal limit", "Base profile", "Learned profile, followed", "Speed driven",
-        "Gas pedal", "Brake until reactivated", "Set speed changed",
-    ]  # fmt: skip
-    low, high = speed.get_ylim()
-    assert low < 19.0 * 3.6 < 25.0 * 3.6 < high
-    assert pedals.get_ylabel() == "Pedals\nbrake | gas"
-
-
-def test_a_base_drive_shows_no_learned_profile() -> None:
-    figure = figure_of({"a": sample()}, "title")
-    axis = figure.axes[0]
-    axis.clear()
-    draw_drive(axis, sample())
-    assert "Learned profile, followed" not in axis.get_legend_handles_labels()[1]
-
-
 def test_several_recordings_are_compared(run: Run) -> None:
     write_recording("a.csv", sample())
     write_recording("b.csv", sample(1.0))
     assert run("plot", "a.csv", "b.csv", "--out", "both.png") == (0, "picture  both.png\n", "")
-    figure = figure_of({"a": sample(), "b": sample(1.0)}, "title")
-    assert [text.get_text() for text in figure.axes[1].get_yticklabels()] == ["a", "b"]
-    assert len(figure.axes) == 3
 
 
 def test_a_laboratory_recording_needs_the_route(run: Run) -> None:

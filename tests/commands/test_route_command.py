@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from pldf import cli
 from pldf.cosim.prepared import prepared_route
-from pldf.report.figures_route import minutes
+from pldf.report.figures import minutes
 from pldf.roads import fingerprint, packed_route, read_route, route_arrays
 from pldf.route_facts import route_facts
 

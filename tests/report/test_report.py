@@ -14,7 +14,8 @@ import pytest
 from pldf.analysis.analysis import Source, analyse
 from pldf.cli import main
 from pldf.instance import ModelError
-from pldf.report.figures_paper import write_figures
+from pldf.report import paper
+from pldf.report.figures.study import study_figures
 from pldf.report.material import Material, collect
 from pldf.report.page import report_of
 from selenium import webdriver
@@ -44,7 +45,7 @@ P003,A,5,4,1,2
 P003,B,3,2,4,4
 """
 REQUEST = "Network.requestWillBeSent"
-FIGURES = ("rates", "drives", "development", "steps", "long", "base")
+FIGURES = ("rates", "compared", "drives", "development", "steps", "long_run", "base")
 BROWSER_FLAGS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-component-update",
     "--disable-background-networking", "--disable-sync", "--disable-dev-shm-usage",
@@ -93,7 +94,7 @@ def page(browser: webdriver.Chrome, html: str, tmp_path_factory: pytest.TempPath
     path = tmp_path_factory.mktemp("report") / "report.html"
     path.write_text(html, encoding="utf-8")
     browser.get(path.as_uri())
-    wait(browser, "document.querySelectorAll('.plotly-graph-div .main-svg').length >= 6")
+    wait(browser, "document.querySelectorAll('.plotly-graph-div .main-svg').length >= 7")
     return browser
 
 
@@ -126,11 +127,11 @@ def test_every_figure_is_drawn(page: webdriver.Chrome) -> None:
 
 
 def test_the_legend_hides_and_shows_a_drive(page: webdriver.Chrome) -> None:
-    entry = "#figure-drives .legend .traces"
+    entry = "#figure-compared .legend .traces"
     names = [e.text for e in page.find_elements(By.CSS_SELECTOR, entry)]
     at = names.index("Speed driven in A2")
     visible = (
-        "document.getElementById('figure-drives')._fullData"
+        "document.getElementById('figure-compared')._fullData"
         ".find((trace) => trace.name === 'Speed driven in A2').visible"
     )
     assert page.execute_script(f"return {visible}") is True
@@ -231,12 +232,13 @@ def test_a_driver_without_recordings_and_a_study_without_any(
 def test_figures_for_papers_are_the_same_bytes_every_time(
     material: Material, tmp_path: Path
 ) -> None:
-    one, two = (write_figures(material, tmp_path / name, "svg") for name in ("one", "two"))
-    assert {path.stem for path in one} == {
-        "base", "development", "drives", "long_run", "rates", "steps",
-    }  # fmt: skip
-    for first, second in zip(one, two, strict=True):
-        assert first.read_bytes() == second.read_bytes()
+    assert tuple(study_figures(material)) == FIGURES
+    for folder in ("one", "two"):
+        for name, scene in study_figures(material).items():
+            paper.save(scene, tmp_path / folder / f"{name}.svg")
+    for name in FIGURES:
+        one, two = (tmp_path / folder / f"{name}.svg" for folder in ("one", "two"))
+        assert one.read_bytes() == two.read_bytes()
 
 
 def test_the_command_writes_figures_as_pdf(folder: Path, tmp_path: Path) -> None:

@@ -94,9 +94,13 @@ def _show(analysis: Analysis, source: Source, options: argparse.Namespace) -> No
         write_report(options.report, material)
         print(f"Report: {options.report}")
     if options.figures:
-        from ..report.figures_paper import write_figures  # noqa: PLC0415
+        from ..report.figures.study import study_figures  # noqa: PLC0415
+        from ..report.paper import save  # noqa: PLC0415
 
-        paths = write_figures(material, options.figures, options.format)
+        figures = study_figures(material)
+        paths = [options.figures / f"{name}.{options.format}" for name in figures]
+        for path, figure in zip(paths, figures.values(), strict=True):
+            save(figure, path)
         print(f"Figures: {', '.join(path.name for path in paths)} in {options.figures}.")
 
 

@@ -134,11 +134,12 @@ def _with_script(
 
 
 def _plot(path: Path, driven: Drive, name: str) -> None:
-    from ..report.figures import figure_of, save  # noqa: PLC0415 - slow to import, not always used
+    from ..report.figures import one_drive  # noqa: PLC0415 - slow to import, not always used
+    from ..report.paper import save  # noqa: PLC0415
 
     rates = driven.outputs
     title = f"{name}: interventions in {100 * rates['rate.combined']:.0f} % of the time"
-    save(figure_of({name: driven.recording}, title), path)
+    save(one_drive(driven.recording, title), path)
     print(f"picture    {path}")
 
 

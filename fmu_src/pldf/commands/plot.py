@@ -42,7 +42,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Draw the picture and say where it is."""
-    from ..report.figures import figure_of, save  # noqa: PLC0415 - slow to import, rarely needed
+    from ..report.figures import recorded  # noqa: PLC0415 - slow to import, rarely needed
+    from ..report.paper import save  # noqa: PLC0415
 
     if len(options.recordings) > _COMPARED_MAX:
         options.wrong_usage(f"at most {_COMPARED_MAX} recordings fit into one picture")
@@ -52,7 +53,7 @@ def run(options: argparse.Namespace) -> None:
     shares = [f"{name} {100 * rates_of(r).combined:.0f} %" for name, r in named.items()]
     title = f"Share of the time with interventions: {', '.join(shares)}"
     out = options.out or options.recordings[0].with_suffix(".png")
-    save(figure_of(named, title, profile), out)
+    save(recorded(named, title, profile), out)
     print(f"picture  {out}")
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from ..cosim.prepared import SUFFIX, write_prepared_route
+from ..instance import ModelError
 from ..kernel.units import KMH_PER_MPS
 from ..roads import fingerprint, open_route, write_route_csv
 from ..route_facts import BINDING_MPS, RouteFacts, route_facts
@@ -57,9 +58,11 @@ def run(options: argparse.Namespace) -> None:
         (write_route_csv if as_csv else write_prepared_route)(route, options.export)
         print(f"written      {options.export}")
     if options.plot is not None:
-        from ..report.figures_route import draw_route  # noqa: PLC0415 (0.5 s that few calls need)
+        from ..report import figures, paper  # noqa: PLC0415 (0.5 s that few calls need)
 
-        draw_route(facts, options.plot)
+        if not options.plot.parent.is_dir():  # most likely a slip of the pen
+            raise ModelError(f"{options.plot}: there is no folder {options.plot.parent}")
+        paper.save(figures.route(facts), options.plot)
         print(f"drawn        {options.plot}")
 
 

@@ -104,27 +104,26 @@ def _show(bar: Progress, driven_m: float, phase: Phase) -> None:
 
 
 def _draw(driven: Sequence[Driven], profile: StoredProfile | None, out: Path) -> list[Path]:
-    from ..report import figures_study as figures  # noqa: PLC0415 - slow to import
-    from ..report.figures import save  # noqa: PLC0415
+    from ..report import figures  # noqa: PLC0415 - slow to import
+    from ..report.paper import save  # noqa: PLC0415
 
     by_name = {one.phase.name: one for one in driven}
     drawn = {
-        "drives.png": figures.drives_figure(
+        "drives.png": figures.drives(
             {name: one.recording for name, one in by_name.items()},
             {name: _panel_title(one) for name, one in by_name.items()},
             _headline(driven),
         ),
-        "rates.png": figures.rates_figure(
+        "rates.png": figures.rate_bars(
             {name: one.rates for name, one in by_name.items()},
-            PUBLISHED,
             "Share of each drive with an intervention",
         ),
     }
     if profile is not None:
-        drawn["profile.png"] = figures.profile_figure(
-            driven[0].recording,
+        drawn["profile.png"] = figures.development(
             profile,
             [one.phase.name for one in driven if one.phase.learn],
+            {driven[0].phase.name: driven[0].recording},
             "What the function has learned after each drive",
         )
     for name, figure in drawn.items():

@@ -25,9 +25,10 @@ from ..files.disk import replace_file
 from ..kernel.signals import signals_of
 from ..kernel.state import PldfState
 from ..roads import fingerprint
-from .interactive import figures_of
+from .figures.study import study_figures
 from .material import VERSIONS, Material
 from .page_tables import against_paper, percent, scores_table
+from .screen import html_of
 
 _POLICY: Final = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:"
@@ -81,7 +82,7 @@ def _head(material: Material) -> str:
 
 def _sections(material: Material) -> list[tuple[str, str, str]]:
     """Return (anchor, title, HTML) of each part that the material allows."""
-    drawn = {name: _figure(name, figure) for name, figure in figures_of(material).items()}
+    drawn = {name: html_of(scene, name) for name, scene in study_figures(material).items()}
     parts = [("table", "Against the paper", against_paper(material.analysis))]
     if material.analysis.questionnaire:
         parts.append(("scores", "Questionnaires", scores_table(material.analysis)))
@@ -100,10 +101,11 @@ def _sections(material: Material) -> list[tuple[str, str, str]]:
 
 _TITLES: Final = {
     "rates": "Rates over the drives",
-    "drives": "The drives of {driver}",
+    "compared": "The drives of {driver}",
+    "drives": "Drive by drive",
     "development": "What the function learned from {driver}",
     "steps": "One intervention, step by step",
-    "long": "Drive after drive",
+    "long_run": "Drive after drive",
     "base": "The road and its base profile",
 }
 _CAPTIONS: Final = {
@@ -113,8 +115,8 @@ _CAPTIONS: Final = {
         "(t distribution). A: base function; B: after learning from the drives before. "
         "Click on an entry of the legend to hide or show it."
     ),
-    "drives": (
-        "Speed driven, and below, drive by drive, where {driver} intervened. Drag along the "
+    "compared": (
+        "Speed driven, where {driver} intervened, and the pedals. Drag along the "
         "distance to zoom, double click to go back, click on the legend to hide or show a drive. "
         "Drives in which the driver does not intervene are left out."
     ),
@@ -130,7 +132,11 @@ _CAPTIONS: Final = {
         "(eq. 3), within the bounds. 5: smoothed and faded into the unchanged profile, which the "
         "next drive follows. The buttons add one step after the other."
     ),
-    "long": (
+    "drives": (
+        "The same drives, each with the profile that the function followed; interventions are "
+        "shaded, and the strip below marks where the set speed had been changed."
+    ),
+    "long_run": (
         "Simulated drivers who intervene and are learned from in every drive, for several stretch "
         "factors. The error is what remains between the profile and the drivers' hidden wish, "
         "which no study with people can measure."
@@ -147,19 +153,6 @@ def _facts(material: Material) -> dict[str, Any]:
         return {}
     steps = material.driver.steps
     return {"number": steps.number, "alpha": steps.alpha, "drive": material.driver.explained}
-
-
-def _figure(name: str, figure: Any) -> str:
-    config = {
-        "displaylogo": False,
-        "responsive": True,
-        "modeBarButtonsToRemove": ["select2d", "lasso2d", "autoScale2d"],
-        "toImageButtonOptions": {"format": "svg", "filename": name},
-    }
-    html: str = figure.to_html(
-        full_html=False, include_plotlyjs=False, div_id=f"figure-{name}", config=config
-    )
-    return html
 
 
 def _reproduction(material: Material) -> str:

@@ -9,12 +9,8 @@ from typing import Final
 from ..analysis.analysis import RATES, Analysis
 from ..analysis.published import DRIVERS, SOURCE, TESTS, published_means
 from ..analysis.statistics import Comparison
+from .figures.shares import RATE_TITLES
 
-RATE_TITLES: Final = {
-    "pedal": "Pedals",
-    "set_speed": "Set speed",
-    "combined": "Pedals or set speed",
-}
 _SMALLEST_P: Final = 1e-300
 _MINUS: Final = "&minus;"
 _SCALES: Final = {

@@ -10,8 +10,7 @@ addEventListener("beforeprint", () => {
   figures().forEach((figure) => {
     const height = figure.layout.height;
     figure.dataset.height = height;
-    const printed = height > 560 ? 430 : 350;
-    resize(figure, printed, { width: 680, autosize: false });
+    resize(figure, Math.round(0.72 * height), { width: 680, autosize: false });
   });
 });
 addEventListener("afterprint", () => {

@@ -1,0 +1,11 @@
+"""What each figure shows, as scenes; ``paper`` and ``screen`` draw them."""
+
+from .driving import compared, drives, one_drive, recorded
+from .learning import development, long_run, steps
+from .road import minutes, route
+from .shares import rate_bars, rates
+
+__all__ = [
+    "compared", "development", "drives", "long_run", "minutes", "one_drive", "rate_bars", "rates",
+    "recorded", "route", "steps",
+]  # fmt: skip

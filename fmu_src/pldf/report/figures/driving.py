@@ -1,0 +1,231 @@
+"""Figures of drives: speed over distance, interventions, pedals."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from math import ceil, floor
+from typing import Final
+
+import numpy as np
+
+from ...kernel.units import KMH_PER_MPS
+from ...profiles.stored_profile import StoredProfile
+from ...recordings.interventions import Interval, pedal_interventions, set_speed_interventions
+from ...recordings.recording import Recording
+from .. import palette
+from ..scene import Axis, Band, Box, Boxes, Element, Fill, Line, Panel, Scene, Stroke, Tick
+from .speeds import (
+    KM,
+    SPEED,
+    base_line,
+    distance_of,
+    limit_line,
+    speed_line,
+    speed_range,
+    thinned,
+    zero_line,
+)
+
+_STRIP: Final = 0.045  # height of the set-speed strip, share of the panel
+_BAR_OPACITY: Final = 0.75  # of interventions in lanes, which hide nothing
+_CHANGED_MPS: Final = 1e-6
+_PEDAL_REACH_MIN: Final = 10.0  # percent
+_PEDAL_TICKS_MAX: Final = 6
+
+
+def recorded(
+    recordings: Mapping[str, Recording], title: str, profile: StoredProfile | None = None
+) -> Scene:
+    """Return the figure of one recording, or of several to compare.
+
+    Args:
+        recordings: complete recordings by name.
+        title: of the whole figure.
+        profile: show the newest state of this profile too.
+    """
+    if len(recordings) > 1:
+        return compared(recordings, title, profile)
+    return one_drive(next(iter(recordings.values())), title, profile)
+
+
+def one_drive(recording: Recording, title: str, profile: StoredProfile | None = None) -> Scene:
+    """Return speed, interventions and pedals of one recording."""
+    x, (low, high) = distance_of(recording), speed_range([recording])
+    speeds = replace(SPEED, low=low, high=high)
+    travel = thinned(recording)
+    s_km, gas, brake = travel["s_m"] * KM, travel["gas_pedal"], travel["brake_pedal"]
+    none = np.zeros(len(s_km))
+    up, down = Fill(palette.GREEN, 0.8), Fill(palette.VERMILLION, 0.8)
+    pedals: tuple[Element, ...] = (
+        Band(s_km, none, 100.0 * gas, up, "Gas pedal travel", listed=False),
+        Band(s_km, -100.0 * brake, none, down, "Brake pedal travel", listed=False),
+        zero_line(x),
+    )
+    drive = (*_drive(recording, speeds), *_newest(profile))
+    return Scene(
+        (
+            Panel(drive, x, speeds, 3.6),
+            Panel(pedals, x, _pedal_axis([recording]), 1.3),
+        ),
+        title,
+    )
+
+
+def compared(
+    recordings: Mapping[str, Recording], title: str, profile: StoredProfile | None = None
+) -> Scene:
+    """Return speeds of several recordings, below them where drivers intervened, and pedals.
+
+    Args:
+        recordings: by name; limits and base profile are those of the first.
+        title: of the whole figure.
+        profile: show the newest state of this profile too.
+    """
+    first = next(iter(recordings.values()))
+    x, (low, high) = distance_of(first), speed_range(recordings.values())
+    rows = thinned(first)
+    speeds: list[Element] = [
+        limit_line(first["s_m"], first["limit_mps"]), base_line(rows["s_m"], rows["base_mps"]),
+        *_newest(profile),
+    ]  # fmt: skip
+    pedals: list[Element] = [zero_line(x)]
+    for number, (name, recording) in enumerate(recordings.items()):
+        speeds.append(driven_line(number, name, recording))
+        pedals += _pedal_lines(number, name, recording)
+    lanes = Axis(
+        "Driver acts in", low=len(recordings) - 0.5, high=-0.5,
+        ticks=tuple(
+            Tick(lane, name, _stroke(lane).colour) for lane, name in enumerate(recordings)
+        ),
+    )  # fmt: skip
+    return Scene(
+        (
+            Panel(tuple(speeds), x, replace(SPEED, low=low, high=high), 3.4),
+            Panel(tuple(_lanes(recordings)), x, lanes, 0.4 + 0.22 * len(recordings)),
+            Panel(tuple(pedals), x, _pedal_axis(recordings.values()), 1.2),
+        ),
+        title,
+    )
+
+
+def drives(recordings: Mapping[str, Recording], titles: Mapping[str, str], title: str) -> Scene:
+    """Return one panel per drive: limit, profiles, speed, interventions shaded.
+
+    Args:
+        recordings: complete, by drive, in order of driving.
+        titles: what each drive was.
+        title: of the whole figure.
+    """
+    x, (low, high) = distance_of(next(iter(recordings.values()))), speed_range(recordings.values())
+    speeds = replace(SPEED, low=low, high=high)
+    return Scene(
+        tuple(
+            Panel(_drive(recording, speeds), x, speeds, 2.2, f"{name}  {titles[name]}")
+            for name, recording in recordings.items()
+        ),
+        title,
+    )
+
+
+def driven_line(number: int, name: str, recording: Recording) -> Line:
+    """Return the speed of the recording with this number, from 0, among several."""
+    rows = thinned(recording)
+    label = f"Speed driven in {name}"
+    return speed_line(rows["s_m"], rows["speed_mps"], _stroke(number), label)
+
+
+def _stroke(number: int) -> Stroke:
+    return palette.COMPARED[number % len(palette.COMPARED)]
+
+
+def _drive(recording: Recording, speeds: Axis) -> tuple[Element, ...]:
+    """Return limit, base profile, profile followed and speed, with the interventions shaded."""
+    rows = thinned(recording)
+    s_m, base, followed = rows["s_m"], rows["base_mps"], rows["profile_mps"]
+    elements: list[Element] = [
+        limit_line(recording["s_m"], recording["limit_mps"]),
+        base_line(s_m, base),
+    ]
+    if np.any(np.abs(followed - base) > _CHANGED_MPS):
+        label = "Learned profile, followed"
+        ends = base * KMH_PER_MPS, followed * KMH_PER_MPS
+        elements += [
+            Band(s_m * KM, *ends, palette.LEARNED, label, listed=False),
+            speed_line(s_m, followed, palette.FOLLOWED, label),
+        ]
+    elements.append(speed_line(s_m, rows["speed_mps"], palette.DRIVEN, "Speed driven"))
+    assert speeds.low is not None
+    assert speeds.high is not None
+    top = {kind: speeds.high for kind in palette.INTERVENTIONS}
+    top["set_speed"] = speeds.low + _STRIP * (speeds.high - speeds.low)
+    for kind, found in _interventions(recording).items():
+        boxes = (_box(recording, one, speeds.low, top[kind]) for one in found)
+        name, fill = palette.INTERVENTIONS[kind]
+        elements.append(Boxes(tuple(boxes), fill, name))
+    return tuple(elements)
+
+
+def _interventions(recording: Recording) -> dict[str, list[Interval]]:
+    """Return the interventions of a recording by kind; kinds that do not occur are left out."""
+    every = [*pedal_interventions(recording), *set_speed_interventions(recording)]
+    kinds = {kind: [one for one in every if one.kind == kind] for kind in palette.INTERVENTIONS}
+    return {kind: found for kind, found in kinds.items() if found}
+
+
+def _box(recording: Recording, one: Interval, low: float, high: float, drive: str = "") -> Box:
+    start, end = recording["s_m"][[one.first, one.last]] * KM
+    begin_s, end_s = recording["time_s"][[one.first, one.last]]
+    name = palette.INTERVENTIONS[one.kind][0]
+    where = f"{drive}, {name}" if drive else name
+    return Box(float(start), float(end), low, high, f"{where}: {end_s - begin_s:.1f} s")
+
+
+def _lanes(recordings: Mapping[str, Recording]) -> list[Element]:
+    """Return bars where the driver intervened, one lane per recording; set speed below pedals."""
+    ends = {"gas": (-0.35, 0.0), "brake": (-0.35, 0.0), "set_speed": (0.03, 0.3)}
+    bars: dict[str, list[Box]] = {kind: [] for kind in palette.INTERVENTIONS}
+    for lane, (name, recording) in enumerate(recordings.items()):
+        for kind, found in _interventions(recording).items():
+            low, high = (lane + end for end in ends[kind])
+            bars[kind] += [_box(recording, one, low, high, name) for one in found]
+    return [
+        Boxes(tuple(boxes), replace(fill, opacity=_BAR_OPACITY), name)
+        for (name, fill), boxes in zip(palette.INTERVENTIONS.values(), bars.values(), strict=True)
+        if boxes
+    ]
+
+
+def _pedal_lines(number: int, name: str, recording: Recording) -> list[Element]:
+    """Return gas upwards and brake downwards; they are hidden and shown with the speed."""
+    rows, stroke = thinned(recording), replace(_stroke(number), width_pt=1.1)
+    label = f"Speed driven in {name}"
+    return [
+        Line(rows["s_m"] * KM, sign * 100.0 * rows[column], stroke, label, listed=False, name=said)
+        for column, sign, said in (
+            ("gas_pedal", 1.0, f"Gas pedal in {name}"),
+            ("brake_pedal", -1.0, f"Brake pedal (negative) in {name}"),
+        )
+    ]
+
+
+def _pedal_axis(recordings: Collection[Recording]) -> Axis:
+    """Return an axis in percent that gas and brake of all recordings fit into."""
+    reach = {
+        pedal: max(_PEDAL_REACH_MIN, *(100.0 * float(np.max(r[pedal])) for r in recordings))
+        for pedal in ("gas_pedal", "brake_pedal")
+    }
+    low, high = -1.2 * reach["brake_pedal"], 1.2 * reach["gas_pedal"]
+    step = next(step for step in (5, 10, 20, 50, 100) if (high - low) / step < _PEDAL_TICKS_MAX)
+    places = range(step * ceil(low / step), floor(high) + 1, step)
+    ticks = tuple(Tick(place, str(abs(place))) for place in places)
+    return Axis("Pedals", "%", note="brake | gas", low=low, high=high, ticks=ticks)
+
+
+def _newest(profile: StoredProfile | None) -> tuple[Element, ...]:
+    if profile is None:
+        return ()
+    newest = profile.iteration()
+    label = f"Profile after drive {newest.number}"
+    s_m = np.arange(float(profile.nodes))
+    return (speed_line(s_m, newest.learned_mps, palette.NEWEST, label),)

@@ -1,0 +1,36 @@
+"""The figures of a study: those that report and paper show."""
+
+from __future__ import annotations
+
+from ...study.phases import PHASES
+from ..material import DriverShown, Material
+from ..scene import Scene
+from .driving import compared, drives
+from .learning import development, long_run, steps
+from .road import route
+from .shares import rates
+
+
+def study_figures(material: Material) -> dict[str, Scene]:
+    """Return the figures that the material allows, by name, in the order of the report."""
+    figures = {"rates": rates(material.analysis)}
+    if material.driver:
+        figures |= _of_driver(material.driver)
+    if material.long_run:
+        figures["long_run"] = long_run(material.long_run)
+    figures["base"] = route(material.route)
+    return figures
+
+
+def _of_driver(driver: DriverShown) -> dict[str, Scene]:
+    acting = {name: driver.recordings[name] for name in driver.acting}
+    titles = {name: PHASES[name].about if name in PHASES else "" for name in acting}
+    title = f"The drives of {driver.participant}"
+    figures = {"compared": compared(acting, title), "drives": drives(acting, titles, title)}
+    if driver.profile.iterations:
+        names = [iteration.note for iteration in driver.profile.iterations]
+        title = f"What the function learned from {driver.participant}"
+        figures["development"] = development(driver.profile, names, acting, title, True)
+    if driver.steps:
+        figures["steps"] = steps(driver.steps)
+    return figures

@@ -1,0 +1,68 @@
+"""Colours, strokes and fills of all figures, on paper and on the page.
+
+Colours are Okabe and Ito's, which keep apart for every kind of colour vision; what only colour
+would tell apart is dashed, marked or hatched as well, for print.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from .scene import Dash, Fill, Mark, Stroke
+
+BLACK, GREY, BLUE, SKY, GREEN, VERMILLION, ORANGE, PURPLE = (
+    "#000000", "#666666", "#0072B2", "#56B4E9", "#009E73", "#D55E00", "#E69F00", "#CC79A7",
+)  # fmt: skip
+GRID: Final = "#DDDDDD"
+
+LIMIT: Final = Stroke(GREY, 1.6)
+BASE: Final = Stroke(BLUE, 1.2, "dash")
+FOLLOWED: Final = Stroke(BLUE, 1.6)
+DRIVEN: Final = Stroke(BLACK, 1.3)
+NEWEST: Final = Stroke(PURPLE, 1.6, "dot")
+ZERO: Final = Stroke("#888888", 0.8)
+
+# Recordings in one panel: every other one is dashed, so that it hides no solid one below.
+COMPARED: Final = (
+    Stroke(BLUE, 1.4),
+    Stroke(VERMILLION, 1.4, "dash"),
+    Stroke(GREEN, 1.4),
+    Stroke(ORANGE, 1.4, "dash"),
+    Stroke(PURPLE, 1.4),
+    Stroke(SKY, 1.4, "dash"),
+    Stroke(BLACK, 1.4, "dot"),
+)
+
+LEARNED: Final = Fill(SKY, 0.35)
+CURVE: Final = Fill(ORANGE, 0.25)
+# What a driver does: by kind of intervention its name and how it is shaded.
+INTERVENTIONS: Final = {
+    "gas": ("Gas pedal", Fill(GREEN, 0.32)),
+    "brake": ("Brake until reactivated", Fill(VERMILLION, 0.32, hatched=True)),
+    "set_speed": ("Set speed changed", Fill(ORANGE, 0.9)),
+}
+
+
+_SERIES: Final[tuple[tuple[str, Dash, Mark], ...]] = (
+    (VERMILLION, "solid", "circle"),
+    (ORANGE, "dash", "square"),
+    (BLUE, "solid", "triangle"),
+    (GREEN, "dot", "diamond"),
+)
+
+
+def series(number: int) -> Stroke:
+    """Return the stroke of the series with this number, from 0, its points marked."""
+    colour, dash, mark = _SERIES[number % len(_SERIES)]
+    return Stroke(colour, 1.5, dash, mark, 4.0)
+
+
+def iteration(number: int, count: int) -> Stroke:
+    """Return the stroke of learned state ``number`` (from 1) of ``count``.
+
+    Later states are darker, thicker lines: earlier ones stay visible below.
+    """
+    few: tuple[tuple[str, Dash], ...] = ((SKY, "solid"), (GREEN, "dashdot"), (BLACK, "solid"))
+    more: tuple[tuple[str, Dash], ...] = (*few[:2], (ORANGE, "solid"), (PURPLE, "dash"), few[2])
+    colour, dash = (shades := few if count <= len(few) else more)[(number - 1) % len(shades)]
+    return Stroke(colour, 1.0 + 0.3 * min(number, len(more)), dash)
