@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 import re
 import shlex
+import subprocess
+import sys
 from collections.abc import Iterator
 from functools import cache
 from importlib import import_module
@@ -212,6 +214,21 @@ def test_first_columns_of_tables_are_variables(page: Path, fmus: dict[str, Fmu])
                 assert name in known, name
                 checked += 1
     assert checked > 10
+
+
+def test_the_site_builds_without_warnings_and_fetches_nothing(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(tmp_path)]
+    result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stdout + result.stderr
+    pages = list(tmp_path.rglob("*.html"))
+    assert len(pages) > len(list((ROOT / "docs").glob("*.md")))  # and 404.html
+    for page in pages:
+        fetched = re.findall(r"<(?:script|img|iframe)[^>]*\bsrc=[\"']?([^\"' >]+)", text_of(page))
+        fetched += re.findall(r"<link[^>]*\bhref=[\"']?([^\"' >]+)", text_of(page))
+        assert fetched
+        assert not [address for address in fetched if re.match(r"(?:https?:)?//", address)]
+    for style in tmp_path.rglob("*.css"):
+        assert not re.findall(r"(?:url\(|@import)\s*[\"']?(?:https?:)?//", text_of(style))
 
 
 def test_ci_runs_what_readme_says_for_windows() -> None:
