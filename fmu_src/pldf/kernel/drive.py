@@ -35,7 +35,7 @@ from .modes import (
     SWITCH_ON,
     next_mode,
 )
-from .recorder import record_sample
+from .recorder import note_set_speed, record_sample
 from .state import PldfState
 from .tracking import target_of, update_request
 
@@ -63,38 +63,50 @@ def drive_step(
     check_inputs(st)
     if st.input_state != INPUT_INVALID:
         locate(st, route)
+        st.sampled_s_m = st.vehicle_s_m
+        st.sampled_x_m = st.vehicle_x_m
+        st.sampled_y_m = st.vehicle_y_m
         record_sample(st, route, trace)
         update_mode_and_set_speed(st, route, profile)
     else:
         st.mode = next_mode(st.mode, FAIL)
-        st.vehicle_acceleration_mps2 = 0.0
     update_request(st, route, profile, step_s)
     st.time_ns += int(1e9 * step_s + 0.5)
     st.ahead_m = 0.0
     if st.input_state != INPUT_INVALID:
         st.ahead_m = max(st.vehicle_speed_mps, 0.0) * step_s
     update_outputs(st, route, profile)
+    note_set_speed(st)
 
 
 def refresh(st: PldfState, route: RouteArrays, profile: ProfileArrays) -> None:
     """Recompute the outputs from new inputs without advancing time, recording or deciding.
 
-    What the next step compares the new position with stays as it is: a jump must not go unnoticed
-    because somebody read an output before the step.
+    The outputs are a function of the memory that the last step left and of the present inputs. All
+    memory stays as it is, so it does not matter whether and how often somebody reads an output.
     """
-    s_m, valid_ns, invalid_ns = st.s_m, st.valid_ns, st.invalid_ns
+    s_m, ahead_m, localized = st.s_m, st.ahead_m, st.localized
+    input_state, valid_ns, invalid_ns = st.input_state, st.valid_ns, st.invalid_ns
     check_inputs(st)
-    st.invalid_ns = invalid_ns
-    if st.input_state == INPUT_INVALID:
-        return
-    locate(st, route)
-    st.ahead_m = 0.0
+    if st.input_state != INPUT_INVALID and is_placed_anew(st):
+        locate(st, route)
+        st.ahead_m = 0.0
     update_outputs(st, route, profile)
-    st.valid_ns = valid_ns
+    st.s_m, st.ahead_m, st.localized = s_m, ahead_m, localized
+    st.input_state, st.valid_ns, st.invalid_ns = input_state, valid_ns, invalid_ns
+
+
+def is_placed_anew(st: PldfState) -> bool:
+    """Tell whether the position inputs are others than those of the last sample.
+
+    As long as they are not, they are a step old: the car is ``ahead_m`` behind them, whatever else
+    was set since.
+    """
     if st.samples == 0:
-        st.localized = 0  # the car may be placed anywhere until the first step
-    else:
-        st.s_m = s_m
+        return True
+    if st.localization == XY:
+        return st.vehicle_x_m != st.sampled_x_m or st.vehicle_y_m != st.sampled_y_m
+    return st.vehicle_s_m != st.sampled_s_m
 
 
 def check_inputs(st: PldfState) -> None:

@@ -17,7 +17,7 @@ SECOND_NS = 1e-9
 
 
 def record_sample(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None:
-    """Add the sample in ``st`` (time_ns, s_m, inputs, mode and set speed) to trace and rates."""
+    """Add the sample in ``st`` (time_ns, s_m, inputs, mode, shown_set_mps) to trace and rates."""
     if st.samples > 0 and st.time_ns <= st.previous_ns:
         return
     _count_time(st)
@@ -30,9 +30,17 @@ def record_sample(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None
     st.previous_speed_mps = st.vehicle_speed_mps
     st.previous_mode = st.mode
     st.previous_brake = _brakes(st)
-    st.previous_set_mps = 0.0
+    st.previous_set_mps = st.shown_set_mps
+
+
+def note_set_speed(st: PldfState) -> None:
+    """Remember the manual set speed that the outputs show, 0 = none, for the next sample.
+
+    The outputs follow new inputs as soon as somebody reads them; what is recorded must not.
+    """
+    st.shown_set_mps = 0.0
     if abs(st.set_speed_offset_mps) > SAME_SPEED_MPS:
-        st.previous_set_mps = st.set_speed_mps
+        st.shown_set_mps = st.set_speed_mps
 
 
 def _brakes(st: PldfState) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from .arrays import Floats, RouteArrays, TraceArrays
-from .recorder import record_sample
+from .recorder import note_set_speed, record_sample
 from .state import PldfState
 
 
@@ -33,4 +33,5 @@ def replay(st: PldfState, route: RouteArrays, trace: TraceArrays, samples: Sampl
         st.set_speed_mps = samples.set_speed_mps[k]
         st.set_speed_offset_mps = samples.set_speed_offset_mps[k]
         st.eligible = int(samples.eligible[k])
+        note_set_speed(st)
         record_sample(st, route, trace)

@@ -90,6 +90,9 @@ class PldfState(Outputs):
     time_ns: int = 0
     s_m: float = 0.0
     ahead_m: float = 0.0  # travel from the last sample to the end of the step
+    sampled_s_m: float = 0.0  # the position inputs of the last sample
+    sampled_x_m: float = 0.0
+    sampled_y_m: float = 0.0
     localized: int = 0
     input_state: int = 0
     valid_ns: int = 0  # when the inputs were last valid
@@ -99,6 +102,7 @@ class PldfState(Outputs):
     manual_set_mps: float = 0.0  # 0 = none
     manual_end_m: float = 0.0
     manual_behind_mps: float = 0.0  # the profile's speed there
+    shown_set_mps: float = 0.0  # manual set speed shown at the end of the last step, 0 = none
     # recorder: the last two knots of the resampled drive, and the sample before this one
     samples: int = 0
     from_s_m: float = 0.0

@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import sqrt
 
 from .arrays import ProfileArrays, RouteArrays
-from .codes import ACTIVE, FAULT, GAS_OVERRIDE
+from .codes import ACTIVE, FAULT, GAS_OVERRIDE, INPUT_INVALID
 from .interpolation import Place, place_at, value_of
 from .lever import automatic_set_speed
 from .state import PldfState
@@ -60,7 +60,7 @@ def update_request(
 
 def _wanted(st: PldfState, route: RouteArrays, profile: ProfileArrays, ahead_s: float) -> float:
     """Return the acceleration to aim at, ``ahead_s`` after the sample of the inputs."""
-    if st.mode in (GAS_OVERRIDE, FAULT):
+    if st.mode in (GAS_OVERRIDE, FAULT) or st.input_state == INPUT_INVALID:
         return 0.0
     acceleration = st.vehicle_acceleration_mps2
     if st.mode != ACTIVE:
