@@ -15,6 +15,9 @@ from pldf.cosim.fmu import Fmu
 from pldf.cosim.master import unpacked
 from pushed_cart import cart_recipe
 
+# Run by test_wheel.py where the sources are out of reach.
+collect_ignore = ["wheel"]
+
 
 @pytest.fixture(scope="session")
 def fmu_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:

@@ -37,7 +37,11 @@ def imported(*arguments: str) -> set[str]:
 
 def test_help_imports_neither_a_command_nor_numpy() -> None:
     names = imported("--help")
-    assert {name for name in names if name.startswith("pldf.")} == {"pldf.cli", "pldf.commands"}
+    assert {name for name in names if name.startswith("pldf.")} == {
+        "pldf.cli",
+        "pldf.commands",
+        "pldf.errors",
+    }
     assert not names & (HEAVY | {"numpy"})
 
 

@@ -14,7 +14,7 @@ _PLACES = {
     "Analysis": "analysis.analysis",
     "Drive": "cosim.master",
     "Learned": "recordings.offline",
-    "ModelError": "instance",
+    "ModelError": "errors",
     "Recording": "recordings.recording",
     "Route": "roads",
     "StoredProfile": "profiles.store",

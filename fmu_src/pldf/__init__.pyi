@@ -5,7 +5,7 @@ from .api import drive as drive
 from .api import learn as learn
 from .api import run_study as run_study
 from .cosim.master import Drive as Drive
-from .instance import ModelError as ModelError
+from .errors import ModelError as ModelError
 from .profiles.store import StoredProfile as StoredProfile
 from .profiles.store import read_profile as read_profile
 from .profiles.store import write_profile as write_profile

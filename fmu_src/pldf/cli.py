@@ -13,6 +13,7 @@ from importlib import import_module
 
 from . import __version__
 from .commands import COMMANDS
+from .errors import ModelError
 
 
 def build_parser(chosen: str | None) -> argparse.ArgumentParser:
@@ -46,8 +47,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # No option before the command takes a value, so the first word is the command.
     chosen = next((word for word in arguments if not word.startswith("-")), None)
     options = build_parser(chosen).parse_args(arguments)
-    from .instance import ModelError  # noqa: PLC0415 - brings numpy, which --help does not need
-
     try:
         options.run(options)
         sys.stdout.flush()

@@ -16,6 +16,7 @@ from typing import Any, Generic, Literal, TypeVar, cast
 
 import numpy as np
 
+from .errors import ModelError as ModelError  # noqa: PLC0414 - every model raises it
 from .kernel.arrays import FloatArray, Floats
 from .kernel.signals import Signal, signals_of
 
@@ -23,10 +24,6 @@ Arrays = tuple[FloatArray, ...]
 Level = Literal["info", "warning", "error"]
 RecordT = TypeVar("RecordT")
 TupleT = TypeVar("TupleT", bound=tuple[Any, ...])
-
-
-class ModelError(ValueError):
-    """A parameter or a file cannot be used; the text says which, why and the way out."""
 
 
 @dataclass(frozen=True)

@@ -27,15 +27,17 @@ def fmus_to_drive(folder: Path = USUAL_FOLDER, kind: Kind | None = None) -> Choi
     Raises:
         ModelError: as ``choose_fmus``, or the FMUs cannot be built or kept.
     """
-    if folder != USUAL_FOLDER or kind == "native" or _any_in(folder):
-        return choose_fmus(folder, kind)
-    return Choice("python", _built_once(folder))
+    # pythonfmu brings no library for macOS: there, only native FMUs drive.
+    possible = kind != "native" and sys.platform != "darwin"
+    if possible and folder == USUAL_FOLDER and nobody_built():
+        return Choice("python", _built_once())
+    return choose_fmus(folder, kind)
 
 
-def _any_in(folder: Path) -> bool:
-    """Tell whether somebody has built here, even if not all that is needed."""
-    places = (folder, folder / NATIVE_FOLDER)
-    return any((place / f"{name}.fmu").exists() for place in places for name in PARTS.values())
+def nobody_built() -> bool:
+    """Tell whether none of the FMUs is where ``pldf build`` puts them, not even a part of them."""
+    places = (USUAL_FOLDER, USUAL_FOLDER / NATIVE_FOLDER)
+    return not any((place / f"{name}.fmu").exists() for place in places for name in PARTS.values())
 
 
 def cached_folder() -> Path:
@@ -46,13 +48,13 @@ def cached_folder() -> Path:
     return user_cache() / f"fmus-{build_version()}-{made_of.hexdigest()[:_DIGITS]}"
 
 
-def _built_once(absent: Path) -> Path:
-    """Return ``cached_folder`` with the FMUs in it; none were in ``absent``."""
+def _built_once() -> Path:
+    """Return ``cached_folder`` with the FMUs in it."""
     target = cached_folder()
     if target.is_dir():
         return target
     print(
-        f"pldf: no FMUs in {absent}; building them for this and later drives into {target}",
+        f"pldf: no FMUs in {USUAL_FOLDER}; building them for this and later drives into {target}",
         file=sys.stderr,
     )
     try:

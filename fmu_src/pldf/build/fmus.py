@@ -24,6 +24,8 @@ HERE: Final = Path(__file__).resolve().parent
 RUNTIME: Final = HERE / "runtime"
 # Where native FMUs go: below the folder of the Python ones.
 NATIVE_FOLDER: Final = "native"
+# What the extra ``native`` brings.
+EXTRA: Final = ("lief", "llvmlite", "ziglang")
 NEEDS_EXTRA: Final = "run: pip install 'adaptive-pldf[native]'"
 
 
@@ -109,13 +111,14 @@ def build_native(name: str, out: Path, targets: Sequence[str], tell: Tell) -> li
     Raises:
         ValueError: the extra is not installed, the build fails, or fmpy finds a problem.
     """
-    try:
-        from vehicle_models.native import packed_scripts  # noqa: PLC0415 - needs the extra
+    absent = [module for module in EXTRA if find_spec(module) is None]
+    if absent:
+        raise ValueError(f"native FMUs need {', '.join(absent)}; {NEEDS_EXTRA}")
+    from vehicle_models.native import packed_scripts  # noqa: PLC0415 - needs the extra
 
-        from ..cosim.prepared import packed_files  # noqa: PLC0415
-        from .native import archives  # noqa: PLC0415
-    except ImportError as missing:
-        raise ValueError(f"{missing}; {NEEDS_EXTRA}") from None
+    from ..cosim.prepared import packed_files  # noqa: PLC0415
+    from .native import archives  # noqa: PLC0415
+
     resources = packed_files()
     if name == "ScriptedDriver":
         resources |= packed_scripts()

@@ -17,4 +17,6 @@ COMMANDS: Final = {
     "study": "Drive a study: the participants of a study file, or one driver with figures.",
     "analyse": "Analyse a study, real or simulated: rates, scores, tests, effect sizes, report.",
     "export": "Write a recording as Parquet or ASAM MDF4, with units.",
+    "doctor": "Show what is installed, what is missing, and where FMUs, profiles and caches lie.",
+    "cite": "Print how to cite the paper and this software, as BibTeX.",
 }

@@ -1,0 +1,71 @@
+"""The wheel works alone: built from the sources, installed where they are out of reach, tested."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import venv
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+SOURCES = ("pyproject.toml", "README.md", "LICENSE", "CITATION.cff", "fmu_src", "vehicle_models")
+
+
+def run(*command: object, folder: Path) -> None:
+    """Run a command in ``folder`` without what the tests' own process was told about sources."""
+    private = {"PYTHONPATH", "PLDF_CACHE", "PLDF_PROFILE_STORE", "PYTEST_ADDOPTS"}
+    result = subprocess.run(
+        [str(word) for word in command],
+        cwd=folder,
+        env={name: value for name, value in os.environ.items() if name not in private},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf-8",
+        check=False,
+    )
+    assert result.returncode == 0, result.stdout
+
+
+def build_wheel(folder: Path) -> Path:
+    """Build from a copy: setuptools takes up what earlier builds left beside the sources."""
+    tree = folder / "tree"
+    tree.mkdir()
+    ignored = shutil.ignore_patterns("__pycache__", "*.egg-info")
+    for name in SOURCES:
+        if (ROOT / name).is_dir():
+            shutil.copytree(ROOT / name, tree / name, ignore=ignored)
+        else:
+            shutil.copy(ROOT / name, tree)
+    run(sys.executable, "-m", "build", "--wheel", "--no-isolation", ".", folder=tree)
+    (wheel,) = tree.glob("dist/*.whl")
+    kept = Path(shutil.move(wheel, folder))
+    shutil.rmtree(tree)
+    return kept
+
+
+def install(wheel: Path, folder: Path) -> Path:
+    """Make an environment with the wheel that borrows the dependencies installed here.
+
+    Their folders are named in a ``.pth`` file: what is editable there stays out of reach, because
+    ``.pth`` files in folders named so are not read.
+    """
+    venv.create(folder, with_pip=False, symlinks=os.name != "nt")
+    python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    pip = (sys.executable, "-m", "pip", "--python", python, "--disable-pip-version-check")
+    run(*pip, "install", "--quiet", "--no-deps", "--no-index", wheel, folder=folder)
+    (own,) = {path.parent for path in folder.rglob("pldf") if path.is_dir()}
+    borrowed = [
+        entry for entry in sys.path if Path(entry).name in ("site-packages", "dist-packages")
+    ]
+    (own / "borrowed.pth").write_text("\n".join(borrowed) + "\n", encoding="utf-8")
+    return python
+
+
+def test_the_wheel_works_alone(tmp_path: Path) -> None:
+    python = install(build_wheel(tmp_path), tmp_path / "venv")
+    tests = shutil.copytree(ROOT / "tests" / "wheel", tmp_path / "tests")
+    run(
+        python, "-m", "pytest", "-p", "no:cacheprovider", "-q", "--durations=5", tests, folder=tests
+    )
