@@ -1,7 +1,9 @@
 # make study   set up .venv, build the FMUs, drive one driver into out/, 43 drivers into out/paper/
-# make test    all tests          make lint    formatting, lints, types
-# make bench   all speeds, JSON   make build   the FMUs into dist/      make clean
-# make native  the FMUs without Python into dist/native/
+# make test    all tests but the nightly ones      make test-all  those, too
+# make lint    formatting, lints, types, imports   make docs      the site into site/
+# make build   the FMUs into dist/                 make native    those without Python: dist/native/
+# make wheel   the Python package into dist/       make bench     all speeds as JSON
+# make clean   takes away all but .venv and out/
 #
 # Needs make and Python 3.11 or newer; PYTHON=... chooses one. STUDY=... passes options for the one
 # driver, e.g. make study STUDY="--seed 7 --set wish.offset_mps=-2"
@@ -20,7 +22,7 @@ BUILT := dist/.built
 FMU_SOURCES := $(shell find fmu_src vehicle_models LICENSE -type f \
 	-not -path '*/__pycache__/*' -not -path '*.egg-info/*')
 
-.PHONY: help study test lint format bench build native setup clean
+.PHONY: help study test test-all lint format docs bench build native wheel setup clean
 
 help:
 	@sed -n '1,/^$$/s/^# \{0,1\}//p' Makefile
@@ -33,6 +35,9 @@ study: $(BUILT)
 test: $(READY)
 	$(BIN)/python -m pytest -n auto --dist loadfile $(TESTS)
 
+test-all: $(READY)
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "nightly or not nightly" $(TESTS)
+
 lint: $(READY)
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
@@ -43,6 +48,9 @@ format: $(READY)
 	$(BIN)/ruff check --fix
 	$(BIN)/ruff format
 
+docs: $(READY)
+	$(BIN)/python -m mkdocs build --strict
+
 bench: $(BUILT)
 	@$(BIN)/python benchmarks/bench.py
 
@@ -50,6 +58,11 @@ build: $(BUILT)
 
 native: $(READY)
 	$(BIN)/pldf build --native --out dist
+
+# Without what an earlier build left in build/: setuptools would pack that, too.
+wheel: $(READY)
+	rm -rf build
+	$(BIN)/python -m build --wheel --no-isolation --outdir dist
 
 setup: $(READY)
 
@@ -70,5 +83,5 @@ $(READY): pyproject.toml
 
 # Leaves .venv (set-up takes minutes) and the recordings and profiles in out/.
 clean:
-	rm -rf dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage htmlcov
+	rm -rf dist build site .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage htmlcov
 	find . -name __pycache__ -type d -not -path './.venv/*' -prune -exec rm -rf {} +
