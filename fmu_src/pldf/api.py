@@ -202,4 +202,4 @@ def analyse(
     """
     from .analysis import analysis
 
-    return analysis.analyse(analysis.Source(Path(folder), route, frozenset(without)))
+    return analysis.analyse(analysis.StudyFolder(Path(folder), route, frozenset(without)))

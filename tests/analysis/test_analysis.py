@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pldf.analysis.analysis import Source, analyse
+from pldf.analysis.analysis import StudyFolder, analyse
 from pldf.analysis.questionnaire import LAAN, PROFILE, read_questionnaire
 from pldf.cli import main
 from pldf.instance import ModelError
@@ -29,7 +29,7 @@ def drives(rates: Iterable[tuple[str, str, Iterable[float]]]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def study(folder: Path, text: str | None = None) -> Source:
+def study(folder: Path, text: str | None = None) -> StudyFolder:
     """A folder with four participants whose means per system are ``A`` and ``B``."""
     spread = {"A1": 0.01, "A2": -0.01, "B1": 0.02, "B2": -0.02, "A3": None, "B3": None}
     rows = []
@@ -40,7 +40,7 @@ def study(folder: Path, text: str | None = None) -> Source:
                 (who, phase, 0.0 * mean if by is None else np.clip(mean + by, 0.0, 1.0).round(4))
             )
     (folder / "drives.csv").write_text(text or drives(rows))
-    return Source(folder)
+    return StudyFolder(folder)
 
 
 def answers(folder: Path, change: Mapping[tuple[str, str, str], str] | None = None) -> Path:
@@ -63,7 +63,7 @@ def answers(folder: Path, change: Mapping[tuple[str, str, str], str] | None = No
     return path
 
 
-def refusal(source: Source) -> str:
+def refusal(source: StudyFolder) -> str:
     with pytest.raises(ModelError) as refused:
         analyse(source)
     return str(refused.value)
@@ -103,22 +103,24 @@ def test_recordings_of_a_laboratory_give_the_rates_of_section_4(tmp_path: Path) 
     for who in ("anna_k", "ben"):
         for phase in ("A1", "A2", "B1", "B2"):
             write_recording(tmp_path / "recordings" / f"{who}_{phase}.csv", Recording(columns))
-    found = analyse(Source(tmp_path))
+    found = analyse(StudyFolder(tmp_path))
     assert found.participants == ("anna_k", "ben")
     rates = [found.comparisons[name].mean_second for name in ("pedal", "set_speed", "combined")]
     assert rates == pytest.approx([0.075, 0.175, 0.195], abs=1e-9)
 
     few = {name: columns[name] for name in ("time_s", "s_m", "speed_mps", "mode")}
     write_recording(tmp_path / "recordings" / "ben_B1.csv", Recording(few))
-    assert "ben_B1.csv: no column brake_pedal, set_speed_offset_mps" in refusal(Source(tmp_path))
-    assert len(analyse(Source(tmp_path, packed_route(0))).drives) == 8
+    assert "ben_B1.csv: no column brake_pedal, set_speed_offset_mps" in refusal(
+        StudyFolder(tmp_path)
+    )
+    assert len(analyse(StudyFolder(tmp_path, packed_route(0))).drives) == 8
 
     (tmp_path / "recordings" / "ben_B2.csv").unlink()
-    told = refusal(Source(tmp_path, packed_route(0)))
+    told = refusal(StudyFolder(tmp_path, packed_route(0)))
     assert "participant ben has no drive B2" in told
     assert "--without ben" in told
     (tmp_path / "recordings" / "ben-B2.csv").write_text("")
-    assert "PARTICIPANT_PHASE.csv" in refusal(Source(tmp_path))
+    assert "PARTICIPANT_PHASE.csv" in refusal(StudyFolder(tmp_path))
 
 
 @pytest.mark.parametrize(
@@ -147,13 +149,13 @@ def test_a_participant_can_be_left_out(tmp_path: Path) -> None:
     study(tmp_path)
     text = (tmp_path / "drives.csv").read_text()
     (tmp_path / "drives.csv").write_text(text.replace("P2,B1,", "P2,B9,"))
-    left = analyse(Source(tmp_path, without=frozenset({"P2"})))
+    left = analyse(StudyFolder(tmp_path, without=frozenset({"P2"})))
     assert left.participants == ("P1", "P3", "P4")
-    assert "1 participants" in refusal(Source(tmp_path, without=frozenset({"P1", "P2", "P3"})))
+    assert "1 participants" in refusal(StudyFolder(tmp_path, without=frozenset({"P1", "P2", "P3"})))
 
 
 def test_nothing_to_analyse(tmp_path: Path) -> None:
-    assert "no drives.csv and no recordings" in refusal(Source(tmp_path))
+    assert "no drives.csv and no recordings" in refusal(StudyFolder(tmp_path))
 
 
 def test_repeated_phases_of_a_study_file_are_compared_by_what_they_are(tmp_path: Path) -> None:
@@ -161,15 +163,15 @@ def test_repeated_phases_of_a_study_file_are_compared_by_what_they_are(tmp_path:
     (tmp_path / "study.toml").write_text(
         '[drives]\nphases = ["A1", "A3", "B1", "B3"]\nper_phase = 2\n'
     )
-    assert Source(tmp_path).compared() == {"A": ("A1", "A2"), "B": ("B1", "B2")}
+    assert StudyFolder(tmp_path).compared() == {"A": ("A1", "A2"), "B": ("B1", "B2")}
     (tmp_path / "study.toml").write_text('[drives]\nphases = ["A3", "A1", "B1"]\nper_phase = 2\n')
-    assert Source(tmp_path).compared() == {"A": ("A3", "A4"), "B": ("B1", "B2")}
+    assert StudyFolder(tmp_path).compared() == {"A": ("A3", "A4"), "B": ("B1", "B2")}
 
 
 def test_which_drive_shows_what_another_taught(tmp_path: Path) -> None:
-    assert Source(tmp_path).development() == {"A2": "B1", "B1": "B2", "B2": "B3"}
+    assert StudyFolder(tmp_path).development() == {"A2": "B1", "B1": "B2", "B2": "B3"}
     (tmp_path / "study.toml").write_text('[drives]\nphases = ["A2", "B1"]\nper_phase = 2\n')
-    assert Source(tmp_path).development() == {"A2": "B1", "B1": "B2"}
+    assert StudyFolder(tmp_path).development() == {"A2": "B1", "B1": "B2"}
 
 
 def test_the_acceptance_scale_is_scored_as_its_authors_do(tmp_path: Path) -> None:

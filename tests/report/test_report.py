@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from pldf.analysis.analysis import Source, analyse
+from pldf.analysis.analysis import StudyFolder, analyse
 from pldf.cli import main
 from pldf.instance import ModelError
 from pldf.report import paper
+from pldf.report.contents import Contents, collect
 from pldf.report.figures.study import study_figures
-from pldf.report.material import Material, collect
 from pldf.report.page import report_of
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
@@ -65,13 +65,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def material(folder: Path) -> Material:
-    return collect(analyse(Source(folder)), Source(folder))
+def contents(folder: Path) -> Contents:
+    return collect(analyse(StudyFolder(folder)), StudyFolder(folder))
 
 
 @pytest.fixture(scope="module")
-def html(material: Material) -> str:
-    return report_of(material)
+def html(contents: Contents) -> str:
+    return report_of(contents)
 
 
 @pytest.fixture(scope="module")
@@ -180,12 +180,12 @@ def test_it_prints_on_paper(page: webdriver.Chrome) -> None:
 
 
 def test_the_same_study_gives_the_same_bytes(html: str, folder: Path) -> None:
-    again = collect(analyse(Source(folder)), Source(folder))
+    again = collect(analyse(StudyFolder(folder)), StudyFolder(folder))
     assert report_of(again) == html
 
 
-def test_numbers_texts_and_parameters(html: str, material: Material) -> None:
-    combined = material.analysis.comparisons["combined"]
+def test_numbers_texts_and_parameters(html: str, contents: Contents) -> None:
+    combined = contents.analysis.comparisons["combined"]
     for text in (
         "<title>Three &lt;people&gt;</title>",
         "3 simulated drivers, 18 drives",
@@ -201,9 +201,9 @@ def test_numbers_texts_and_parameters(html: str, material: Material) -> None:
         assert text in html, text
 
 
-def test_the_steps_of_the_intervention_fit_together(material: Material) -> None:
-    assert material.driver is not None
-    steps = material.driver.steps
+def test_the_steps_of_the_intervention_fit_together(contents: Contents) -> None:
+    assert contents.driver is not None
+    steps = contents.driver.steps
     assert steps is not None
     end = steps.piece_m[-1]
     assert steps.stretched_m[-1] == end
@@ -219,7 +219,7 @@ def test_a_driver_without_recordings_and_a_study_without_any(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(ModelError, match=r"recordings/P002_A2.csv.*recorded are P001"):
-        collect(analyse(Source(folder)), Source(folder), "P002")
+        collect(analyse(StudyFolder(folder)), StudyFolder(folder), "P002")
     shutil.copy(folder / "drives.csv", tmp_path)
     report = tmp_path / "report.html"
     assert main(["analyse", str(tmp_path), "--report", str(report)]) == 0
@@ -230,11 +230,11 @@ def test_a_driver_without_recordings_and_a_study_without_any(
 
 
 def test_figures_for_papers_are_the_same_bytes_every_time(
-    material: Material, tmp_path: Path
+    contents: Contents, tmp_path: Path
 ) -> None:
-    assert tuple(study_figures(material)) == FIGURES
+    assert tuple(study_figures(contents)) == FIGURES
     for folder in ("one", "two"):
-        for name, scene in study_figures(material).items():
+        for name, scene in study_figures(contents).items():
             paper.save(scene, tmp_path / folder / f"{name}.svg")
     for name in FIGURES:
         one, two = (tmp_path / folder / f"{name}.svg" for folder in ("one", "two"))

@@ -39,7 +39,7 @@ Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Source:
+class StudyFolder:
     """Where a study lies and what of it counts.
 
     Attributes:
@@ -191,7 +191,7 @@ def mean_rates(
     return np.array([float(np.mean(v)) if v else np.nan for v in found.values()])
 
 
-def analyse(source: Source, progress: Progress = lambda _done, _all: None) -> Analysis:
+def analyse(source: StudyFolder, progress: Progress = lambda _done, _all: None) -> Analysis:
     """Analyse the study in ``source.folder``.
 
     Raises:
@@ -220,7 +220,7 @@ def analyse(source: Source, progress: Progress = lambda _done, _all: None) -> An
     return replace(found, comparisons=comparisons)
 
 
-def _drives(source: Source, progress: Progress) -> tuple[list[DriveRow], Path]:
+def _drives(source: StudyFolder, progress: Progress) -> tuple[list[DriveRow], Path]:
     """Return all drives, from the table of drives if there is one, else from the recordings."""
     table = source.folder / "drives.csv"
     if table.exists():
@@ -237,7 +237,7 @@ def _drives(source: Source, progress: Progress) -> tuple[list[DriveRow], Path]:
     return drives, source.folder / "recordings"
 
 
-def _questionnaire(source: Source, participants: Collection[str]) -> Questionnaire | None:
+def _questionnaire(source: StudyFolder, participants: Collection[str]) -> Questionnaire | None:
     path = source.folder / "questionnaire.csv"
     if not path.exists():
         return None

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
-from ..analysis.analysis import RATES, Analysis, Source, analyse
+from ..analysis.analysis import RATES, Analysis, StudyFolder, analyse
 from ..analysis.analysis_tables import write_tables
 from ..analysis.published import DRIVERS, TESTS, published_means
 from ..analysis.questionnaire import SCALES
@@ -68,7 +68,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Analyse, write the tables, print what was found and where it is."""
     route = choose_route(options.route)[0] if options.route else None
-    source = Source(options.folder, route, frozenset(options.without))
+    source = StudyFolder(options.folder, route, frozenset(options.without))
     with Progress(transient=True) as bar:
         task = bar.add_task("recordings", total=None)
         analysis = analyse(source, lambda done, all_: bar.update(task, completed=done, total=all_))
@@ -83,21 +83,21 @@ def run(options: argparse.Namespace) -> None:
     print(f"Tables: {', '.join(path.name for path in written)} in {written[0].parent}.")
 
 
-def _show(analysis: Analysis, source: Source, options: argparse.Namespace) -> None:
+def _show(analysis: Analysis, source: StudyFolder, options: argparse.Namespace) -> None:
     """Write report and figures, as far as they are wanted."""
-    from ..report.material import collect  # noqa: PLC0415 - slow to import
+    from ..report.contents import collect  # noqa: PLC0415 - slow to import
 
-    material = collect(analysis, source, options.driver)
+    contents = collect(analysis, source, options.driver)
     if options.report:
         from ..report.page import write_report  # noqa: PLC0415
 
-        write_report(options.report, material)
+        write_report(options.report, contents)
         print(f"Report: {options.report}")
     if options.figures:
         from ..report.figures.study import study_figures  # noqa: PLC0415
         from ..report.paper import save  # noqa: PLC0415
 
-        figures = study_figures(material)
+        figures = study_figures(contents)
         paths = [options.figures / f"{name}.{options.format}" for name in figures]
         for path, figure in zip(paths, figures.values(), strict=True):
             save(figure, path)

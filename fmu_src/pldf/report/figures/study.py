@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...study.phases import PHASES
-from ..material import DriverShown, Material
+from ..contents import Contents, DriverShown
 from ..scene import Scene
 from .driving import compared, drives
 from .learning import development, long_run, steps
@@ -11,14 +11,14 @@ from .road import route
 from .shares import rates
 
 
-def study_figures(material: Material) -> dict[str, Scene]:
-    """Return the figures that the material allows, by name, in the order of the report."""
-    figures = {"rates": rates(material.analysis)}
-    if material.driver:
-        figures |= _of_driver(material.driver)
-    if material.long_run:
-        figures["long_run"] = long_run(material.long_run)
-    figures["base"] = route(material.route)
+def study_figures(contents: Contents) -> dict[str, Scene]:
+    """Return the figures that the contents allows, by name, in the order of the report."""
+    figures = {"rates": rates(contents.analysis)}
+    if contents.driver:
+        figures |= _of_driver(contents.driver)
+    if contents.long_run:
+        figures["long_run"] = long_run(contents.long_run)
+    figures["base"] = route(contents.route)
     return figures
 
 

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from ..analysis.analysis import Analysis, Source
+from ..analysis.analysis import Analysis, StudyFolder
 from ..analysis.long_run import Columns, read_long_run
 from ..function import DrivingFunction
 from ..instance import ModelError
@@ -54,7 +54,7 @@ class DriverShown:
 
 
 @dataclass(frozen=True, eq=False)
-class Material:
+class Contents:
     """Everything that the report shows.
 
     Attributes:
@@ -83,7 +83,7 @@ class Material:
         return STUDY in self.texts
 
 
-def collect(analysis: Analysis, source: Source, driver: str | None = None) -> Material:
+def collect(analysis: Analysis, source: StudyFolder, driver: str | None = None) -> Contents:
     """Read what the report of a study shows beside its numbers.
 
     Args:
@@ -104,7 +104,7 @@ def collect(analysis: Analysis, source: Source, driver: str | None = None) -> Ma
     route = source.route or _route_of(source)
     function = _function(parameters.get("pldf", {}))
     shown = _choose(analysis, source, driver)
-    return Material(
+    return Contents(
         analysis=analysis,
         title=str(source.study.get("title", f"Study {folder.resolve().name}")),
         route=_facts(route, function),
@@ -116,7 +116,7 @@ def collect(analysis: Analysis, source: Source, driver: str | None = None) -> Ma
     )
 
 
-def _route_of(source: Source) -> Route:
+def _route_of(source: StudyFolder) -> Route:
     """Return the route of the study file, if that can be found without knowing its place."""
     name = str(source.study.get("road", {}).get("route", "study"))
     if name != "study" and not name.isdigit():
@@ -163,7 +163,7 @@ def _parameter_ranges(path: Path) -> Mapping[str, tuple[float, float, float]]:
     return found
 
 
-def _choose(analysis: Analysis, source: Source, wanted: str | None) -> str | None:
+def _choose(analysis: Analysis, source: StudyFolder, wanted: str | None) -> str | None:
     """Return whom to show: of those recorded, who is nearest to the median fall of the rate."""
     recorded = source.recordings()
     first = _first_taught(source)
@@ -183,13 +183,13 @@ def _choose(analysis: Analysis, source: Source, wanted: str | None) -> str | Non
     return min(complete, key=lambda name: abs(falls[name] - median))
 
 
-def _first_taught(source: Source) -> str:
+def _first_taught(source: StudyFolder) -> str:
     """Return the first drive that is learned from; it follows the base profile."""
     return next((phase.name for phase in source.order() if phase.learn), "")
 
 
 def _driver(
-    participant: str, source: Source, route: Route, function: DrivingFunction
+    participant: str, source: StudyFolder, route: Route, function: DrivingFunction
 ) -> DriverShown:
     first = _first_taught(source)
     known = replace(source, route=route)
