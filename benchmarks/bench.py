@@ -21,6 +21,7 @@ from statistics import median
 from typing import Any, Final
 
 import fmu_step
+from command_times import command_times
 from empty_fmu import build_empty_fmu
 from fmpy import read_model_description  # type: ignore[import-untyped]
 from fmu_step import time_fmu
@@ -52,6 +53,7 @@ def main() -> int:
         return 1
     result = {
         "machine": {"python": platform.python_version(), "processor": platform.machine()},
+        "command_cpu_s": command_times(),
         "fmu": {name: _fmu(options.dist / f"{name}.fmu", RECORDS[name]) for name in RECORDS},
         "kernel_step": step_times(),
         "toppra_4.5_km_s": toppra_s(),

@@ -1,4 +1,4 @@
-"""The native benchmark runs, and what it says makes sense; no time is judged here."""
+"""The benchmarks run, and what they say makes sense; no time is judged here."""
 
 from __future__ import annotations
 
@@ -32,3 +32,12 @@ def test_the_native_benchmark_measures_every_fmu(measured: dict[str, Any]) -> No
         assert times["instantiate_and_initialize"]["cpu_s"] > 0.0
     assert {"without_store", "store_on_disk"} <= set(endings)
     assert all(times["wall_s"] > 0.0 for times in endings.values())
+
+
+def test_whole_commands_are_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(BENCHMARKS)
+    import command_times  # noqa: PLC0415 - found by now
+
+    times = command_times.command_times(runs=1)
+    assert set(times) == {"pldf --help", "pldf route study"}
+    assert all(cpu_s > 0.0 for cpu_s in times.values())

@@ -14,7 +14,6 @@ from ..cache import CACHE_VARIABLE, user_cache
 from ..cosim.master import PARTS
 from ..cosim.which_fmus import NATIVE_FOLDER, USUAL_FOLDER, Choice, Kind, choose_fmus
 from ..instance import ModelError
-from . import builder, fmus
 
 _DIGITS: Final = 10
 
@@ -42,6 +41,8 @@ def nobody_built() -> bool:
 
 def cached_folder() -> Path:
     """Return where the FMUs of the sources installed lie in the user's cache, or will."""
+    from . import builder, fmus  # noqa: PLC0415 - brings pythonfmu, which drives do not need
+
     made_of = sha256(version("pythonfmu").encode())
     for recipe in fmus.FMUS.values():
         made_of.update(builder.identity(recipe).encode())
@@ -50,6 +51,8 @@ def cached_folder() -> Path:
 
 def _built_once() -> Path:
     """Return ``cached_folder`` with the FMUs in it."""
+    from . import fmus  # noqa: PLC0415 - as above
+
     target = cached_folder()
     if target.is_dir():
         return target

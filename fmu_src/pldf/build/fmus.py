@@ -16,7 +16,7 @@ from fmpy.validation import validate_fmu  # type: ignore[import-untyped]
 from ..build_version import build_version
 from ..cosim.master import unpacked
 from ..cosim.platforms import PLATFORMS
-from ..instance import ModelError
+from ..errors import ModelError
 from .builder import Package, Recipe, build
 from .packages import write_packages, write_sources
 
@@ -82,31 +82,36 @@ NATIVE: Final = {
     "ScriptedDriver": "vehicle_models.native:DRIVER",
 }
 
-# Called with the piece of work that begins.
-Tell = Callable[[str], None]
+# Called with each piece of work when it begins.
+Announce = Callable[[str], None]
 
 
-def build_python(name: str, out: Path, tell: Tell) -> list[Path]:
+def build_python(name: str, out: Path, announce: Announce) -> list[Path]:
     """Build and validate one FMU of Python source in ``out``.
+
+    Args:
+        name: a key of ``FMUS``.
+        out: folder of the FMU, made if needed.
+        announce: hears what is being done.
 
     Raises:
         ValueError: it cannot be packed, or fmpy finds a problem in it.
     """
-    tell("pack the Python source")
+    announce("pack the Python source")
     paths = [build(FMUS[name], out)]
-    tell("validate")
+    announce("validate")
     require_valid(paths)
     return paths
 
 
-def build_native(name: str, out: Path, targets: Sequence[str], tell: Tell) -> list[Path]:
+def build_native(name: str, out: Path, targets: Sequence[str], announce: Announce) -> list[Path]:
     """Build and validate one native FMU in ``out/native``, for FMI 2.0 and 3.0.
 
     Args:
         name: a key of ``FMUS``.
         out: folder of the Python FMUs.
         targets: keys of ``cosim.platforms.PLATFORMS``; empty: all.
-        tell: told what is being done.
+        announce: hears what is being done.
 
     Raises:
         ValueError: the extra is not installed, the build fails, or fmpy finds a problem.
@@ -132,8 +137,8 @@ def build_native(name: str, out: Path, targets: Sequence[str], tell: Tell) -> li
         packed.version,
     )
     chosen = [t for platform in targets or PLATFORMS for t in PLATFORMS[platform]]
-    paths = archives.build_native(recipe, chosen, out / NATIVE_FOLDER, tell)
-    tell("validate")
+    paths = archives.build_native(recipe, chosen, out / NATIVE_FOLDER, announce)
+    announce("validate")
     require_valid(paths)
     return paths
 

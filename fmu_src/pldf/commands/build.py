@@ -8,7 +8,7 @@ from time import perf_counter
 from typing import Final
 
 from ..cosim.platforms import PLATFORMS
-from ..instance import ModelError
+from ..errors import ModelError
 
 EXAMPLE: Final = (
     "pldf build\n"
@@ -59,19 +59,7 @@ def run(options: argparse.Namespace) -> None:
     made: list[Path] = []
     names = [options.only] if options.only else list(fmus.FMUS)
     for number, name in enumerate(names, start=1):
-        progress = Progress(f"[{number}/{len(names)}] {name}")
-        try:
-            if options.native:
-                paths = fmus.build_native(name, options.out, options.target, progress)
-            else:
-                paths = fmus.build_python(name, options.out, progress)
-        except ValueError as problem:
-            progress.end("failed")
-            raise ModelError(f"{name}: {problem}") from None
-        progress.end()
-        for path in paths:
-            print(f"    {path} ({path.stat().st_size / 1024:.0f} KiB)")
-        made += paths
+        made += _build(f"[{number}/{len(names)}] {name}", name, options)
     if not options.only:
         folder = options.out / fmus.NATIVE_FOLDER if options.native else options.out
         written = fmus.build_packages(folder, made, options.ssp_sources)
@@ -79,14 +67,33 @@ def run(options: argparse.Namespace) -> None:
             print(f"{folder}: {', '.join(path.name for path in written)} (valid)")
 
 
-class Progress:
+def _build(label: str, name: str, options: argparse.Namespace) -> list[Path]:
+    """Build one FMU, say what is being done, and return its archives."""
+    from ..build import fmus  # noqa: PLC0415 - as above
+
+    work = WorkLog(label)
+    try:
+        if options.native:
+            paths = fmus.build_native(name, options.out, options.target, work.begin)
+        else:
+            paths = fmus.build_python(name, options.out, work.begin)
+    except ValueError as problem:
+        work.end("failed")
+        raise ModelError(f"{name}: {problem}") from None
+    work.end()
+    for path in paths:
+        print(f"    {path} ({path.stat().st_size / 1024:.0f} KiB)")
+    return paths
+
+
+class WorkLog:
     """Says what is being done and how long it took: a line for each piece of work."""
 
     def __init__(self, label: str) -> None:
         self._label = label
         self._since: float | None = None
 
-    def __call__(self, work: str) -> None:
+    def begin(self, work: str) -> None:
         """Begin ``work``; what was begun before is done."""
         self.end()
         print(f"{self._label}: {work} ... ", end="", flush=True)
