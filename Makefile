@@ -28,7 +28,7 @@ help:
 	@sed -n '1,/^$$/s/^# \{0,1\}//p' Makefile
 
 study: $(BUILT)
-	$(BIN)/pldf study --out out $(STUDY)
+	$(BIN)/pldf study --out out --restart $(STUDY)
 	$(BIN)/pldf study paper --out out/paper --restart
 	$(BIN)/pldf analyse out/paper --report out/paper/report.html
 

@@ -23,8 +23,9 @@ import numpy as np
 from pldf.files.disk import replace_file
 from pldf.kernel.arrays import FloatArray
 from pldf.kernel.units import MPS_PER_KMH
+from pldf.roads import open_road
 from pldf.study.participants import StudySettings
-from pldf.study.phases import PHASES, choose_route
+from pldf.study.phases import PHASES
 from pldf.study.population import Distribution, Lognormal, Normal, sample_participants
 from pldf.study.runner import in_processes
 from pldf.study.unit import Job
@@ -75,10 +76,9 @@ class Fit:
 
     def __post_init__(self) -> None:
         """Choose road and drives."""
-        route, road = choose_route("study")
         phases = tuple(PHASES[name] for name in DRIVES)
         self.reached = TARGETS
-        self.job = Job(StudySettings(route=route, road=road, phases=phases))
+        self.job = Job(StudySettings(road=open_road("study"), phases=phases))
 
     def rates(self, factors: FloatArray) -> FloatArray:
         """Return the mean pedal, set-speed and combined rates in percent."""

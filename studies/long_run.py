@@ -22,9 +22,10 @@ from pldf.analysis.long_run import read_long_run
 from pldf.analysis.statistics import mean_interval
 from pldf.kernel.units import KMH_PER_MPS
 from pldf.report import figures, paper
+from pldf.roads import open_road
 from pldf.study.drive_row import DriveRow
 from pldf.study.participants import Participant, StudySettings
-from pldf.study.phases import PHASES, choose_route
+from pldf.study.phases import PHASES
 from pldf.study.population import read_distribution, sample_participants
 from pldf.study.runner import in_processes
 from pldf.study.unit import Job
@@ -38,10 +39,9 @@ def long_run(
     people: Sequence[Participant], stretch: float, drives: int, jobs: int
 ) -> list[Summary]:
     """Return one summary per drive of all people."""
-    route, road = choose_route("study")
     phases = tuple(PHASES["B1"]._replace(name=f"B{k + 1}") for k in range(drives))
     settings = StudySettings(
-        route=route, road=road, phases=phases, function={"learning.stretch_factor": stretch}
+        road=open_road("study"), phases=phases, function={"learning.stretch_factor": stretch}
     )
     done = sorted(
         in_processes(jobs)(Job(settings), list(people)), key=lambda unit: unit.participant

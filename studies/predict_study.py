@@ -22,8 +22,9 @@ import numpy as np
 from pldf.analysis.published import DRIVERS, TESTS, published_means
 from pldf.analysis.statistics import Comparison, compare
 from pldf.kernel.arrays import FloatArray
+from pldf.roads import open_road
 from pldf.study.participants import Participant, StudySettings
-from pldf.study.phases import PHASES, choose_route
+from pldf.study.phases import PHASES
 from pldf.study.population import Distribution, read_distribution, sample_participants
 from pldf.study.runner import in_processes
 from pldf.study.unit import Job
@@ -34,8 +35,7 @@ COMPARED: Final = {"A": ("A1", "A2"), "B": ("B1", "B2")}
 
 def drive_studies(distribution: Distribution, studies: int, jobs: int) -> FloatArray:
     """Return rates[study, person, drive, measure] in percent; drives are A1, A2, B1, B2."""
-    route, road = choose_route("study")
-    settings = StudySettings(route=route, road=road, phases=tuple(PHASES.values()))
+    settings = StudySettings(road=open_road("study"), phases=tuple(PHASES.values()))
     people = [one for seed in range(studies) for one in study_people(seed, distribution)]
     drives = [name for names in COMPARED.values() for name in names]
     found: dict[str, list[list[float]]] = {}

@@ -104,30 +104,31 @@ def drive(  # noqa: PLR0913 - the options of a drive, all by name
     """
     from .build.first_use import fmus_to_drive
     from .cosim import master, settable
+    from .cosim.road_values import road_values
     from .cosim.which_fmus import USUAL_FOLDER
-    from .study.phases import PHASES, Setting, choose_route, values_of
+    from .roads import open_road
+    from .study.phases import PHASES, DriveSetting, values_of
 
     if phase not in PHASES:
         raise ModelError(f"phase {phase}: there are {', '.join(PHASES)}")
-    chosen_route, road = choose_route(route)
+    road = open_road(route)
     choice = fmus_to_drive(Path(fmus) if fmus is not None else USUAL_FOLDER)
     with master.unpacked(choice.folder) as unpacked:
-        setting = Setting(
-            chosen_route,
-            road,
+        setting = DriveSetting(
+            road.route,
+            road_values(road, unpacked["pldf"].folder.parent),
             driver_id,
             seed,
             None if store is None else Path(store),
-            more=settable.chosen_values(unpacked, parameters or {}),
+            settable.chosen_values(unpacked, parameters or {}),
         )
-        values = values_of(PHASES[phase], setting)
-        driven = master.drive(unpacked, values, setting.course(lambda _: None))
-    for said in driven.said:
-        if said.level == "error":
-            raise ModelError(f"{said.fmu}: {said.text}")
-    if not driven.arrived:
-        raise ModelError(f"the drive was given up: the vehicle {driven.ending}")
-    return driven
+        done = master.drive(unpacked, values_of(PHASES[phase], setting), setting.length_m)
+    for message in done.messages:
+        if message.level == "error":
+            raise ModelError(f"{message.fmu}: {message.text}")
+    if not done.arrived:
+        raise ModelError(f"the drive was given up: the vehicle {done.ending}")
+    return done
 
 
 def run_study(
@@ -155,32 +156,24 @@ def run_study(
         ModelError: the study file cannot be used, the folder holds another study, or a drive
             failed.
     """
-    if file is None:
-        return _one_driver(Path(out or "out"))
-    from .study.results import Results
-    from .study.runner import in_processes, run_missing
-    from .study.study_file import read_study, study_path
-    from .study.unit import Job
+    from contextlib import ExitStack
 
-    study = read_study(study_path(os.fspath(file)))
-    folder = Path(out or study.out)
-    results = Results(study, folder, through="kernels")
-    results.open(restart)
-    run = in_processes(jobs or os.cpu_count() or 1)
-    run_missing(results, Job(study.settings), run, lambda _: None)
-    return folder
-
-
-def _one_driver(out: Path) -> Path:
     from .build.first_use import fmus_to_drive
     from .cosim.master import unpacked
-    from .study import run
-    from .study.phases import PHASES, Setting, choose_route
+    from .study.folder import StudyFolder
+    from .study.runner import in_processes, run_missing
+    from .study.study_file import ONE_DRIVER, read_study, study_path
+    from .study.unit import Job
 
-    setting = Setting(*choose_route("study"), store=out / "profiles")
-    with unpacked(fmus_to_drive().folder) as fmus:
-        run.run_study(fmus, [*PHASES.values()], setting, out, lambda _, __: None)
-    return out
+    study = read_study(study_path(ONE_DRIVER if file is None else os.fspath(file)))
+    with ExitStack() as stack:
+        through_fmus = study.through == "fmus"
+        fmus = stack.enter_context(unpacked(fmus_to_drive().folder)) if through_fmus else None
+        folder = StudyFolder(study, Path(out or study.out), fmus)
+        folder.open(restart)
+        run = in_processes(jobs or os.cpu_count() or 1)
+        run_missing(folder, Job(study.settings, fmus), run, lambda _: None)
+    return folder.out
 
 
 def analyse(

@@ -13,7 +13,7 @@ from pldf.cosim.fmu import Fmu
 from pldf.cosim.master import drive
 from pldf.recordings.recording import write_recording
 from pldf.roads import packed_route
-from pldf.study.phases import PHASES, Setting, values_of
+from pldf.study.phases import PHASES, DriveSetting, values_of
 
 pytest.importorskip("ziglang", reason="needs the extra: pip install -e .[native]")
 if sys.platform != "linux":
@@ -25,7 +25,7 @@ from pldf.cosim.prepared import write_prepared_route
 def driven(fmus: dict[str, Fmu], phase: str, store: Path, number: int) -> tuple[bytes, bytes]:
     """Return recording and profile file after one drive of 1 km with this store."""
     more = {"vehicle": {"start_s_m": 3400.0}}
-    setting = Setting(packed_route(0), {"route_id": 0}, store=store, more=more)
+    setting = DriveSetting(packed_route(0), {"route_id": 0}, store=store, more=more)
     values = values_of(PHASES[phase], setting, number)
     result = drive(fmus, values, setting.course(lambda _: None))
     recording = store / f"{number}.csv"

@@ -9,14 +9,13 @@ import pytest
 from laboratory import files
 from pldf import cli
 from pldf.build_version import build_version
-from pldf.cosim.fmu import Fmu, Slave
+from pldf.cosim.fmu import Slave
 from pldf.cosim.master import unpacked
 from pldf.cosim.prepared import write_prepared_route, write_prepared_script
 from pldf.instance import ModelError
 from pldf.profiles.store import ProfileStore
 from pldf.roads import fingerprint, packed_route, read_route
-from pldf.study.phases import PHASES, Setting, choose_route
-from pldf.study.run import run_study
+from pldf.study.phases import PHASES
 
 from vehicle_models.driver_script import read_script, script_arrays
 
@@ -43,21 +42,20 @@ participants = ["P001", "P002"]
 
 
 def test_all_six_drives_are_those_of_the_python_fmus(
-    fmus: dict[str, Fmu], native_fmus: dict[str, Fmu], tmp_path: Path
+    fmu_folder: Path, native_folder: Path, tmp_path: Path
 ) -> None:
     found = []
-    for kind, chosen in (("Python", fmus), ("native", native_fmus)):
+    for kind, folder in (("Python", fmu_folder), ("native", native_folder)):
         out = tmp_path / kind
-        setting = Setting(*choose_route("study"), store=out / "profiles")
-        run_study(chosen, list(PHASES.values()), setting, out, lambda *_: None)
+        fmus = ["--fmu", kind.lower(), "--fmus", str(folder)]
+        assert cli.main(["study", "--out", str(out), *fmus]) == 0
         assert len(ProfileStore(out / "profiles").files()) == 1
         found.append(files(out))
-        described = json.loads(found[-1].pop("study.json"))
-        about = f"{kind} FMU, version {build_version()}"
-        assert described["fmus"] == dict.fromkeys(("vehicle", "driver", "pldf"), about)
+        versions = json.loads(found[-1].pop("versions.json"))
+        assert versions["through"] == f"{kind} FMU, version {build_version()}"
     assert found[0] == found[1]
-    tables = {f"{part}/{name}.csv" for part in ("recordings", "profile_after") for name in PHASES}
-    assert tables | {"rates.csv"} < set(found[0])
+    recordings = {f"recordings/P001_{name}.csv" for name in PHASES}
+    assert recordings | {"drives.csv"} < set(found[0])
 
 
 def test_a_library_that_does_not_load_is_an_error(

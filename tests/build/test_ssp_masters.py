@@ -18,7 +18,7 @@ from fmi_host import Host
 from numpy.typing import NDArray
 from pldf.build.packages import start_values
 from pldf.cosim.fmu import Fmu
-from pldf.cosim.master import Course, drive
+from pldf.cosim.master import drive
 from pldf.profiles.store import ProfileStore, StoredProfile
 from pldf.roads import fingerprint, packed_route
 from pldf.study.phases import PHASES
@@ -80,7 +80,7 @@ def driven(trial: Trial, phase: str, store: Path) -> FloatArray:
     values = start_values(PHASES[phase], list(PHASES).index(phase))
     values["pldf"]["profile_store"] = str(store)
     length_m = min(30.0 * trial.seconds, packed_route(0).nodes - 1.0)
-    recording = drive(trial.fmus, values, Course(length_m, step_s=STEP_S)).recording
+    recording = drive(trial.fmus, values, length_m, STEP_S).recording
     assert recording["time_s"][-1] > trial.seconds
     return recording["speed_mps"]
 

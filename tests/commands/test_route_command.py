@@ -134,7 +134,7 @@ def test_a_folder_that_does_not_exist_is_bad_input(run: Run, option: str, name: 
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        ((), "required: FILE"),
+        ((), "required: ROAD"),
         (("study", "--plot", "road.doc"), "must end in .png"),
         (("study", "--default-limit", "0"), "above 0"),
         (("study", "--default-limit", "fast"), "above 0"),

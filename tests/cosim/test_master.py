@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from pldf.cosim.fmu import Fmu
-from pldf.cosim.master import ARRIVED, Course, Drive, connections, drive
+from pldf.cosim.master import ARRIVED, Drive, connections, drive
 from pldf.instance import ModelError
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE, STANDBY
 from pldf.profiles.store import ProfileStore, StoredProfile
@@ -21,7 +21,7 @@ from pldf.recordings.interventions import Interval, pedal_interventions, rates_o
 from pldf.recordings.offline import learn_from
 from pldf.recordings.recording import COLUMNS, Recording, read_recording, write_recording
 from pldf.roads import fingerprint, packed_route, route_arrays
-from pldf.study.phases import PHASES, Phase, Setting, choose_route, values_of
+from pldf.study.phases import PHASES, DriveSetting, Phase, values_of
 
 # How closely the function follows its profile on the study road with the shipped vehicle.
 TRACKING_MPS = 0.2
@@ -51,17 +51,21 @@ WIRES = {
 }
 
 
-def setting(store: Path | None = None, step_s: float = 0.02, **more: dict[str, Any]) -> Setting:
-    return Setting(*choose_route("study"), store=store, step_s=step_s, more=more)
+STEP_S = 0.02
+
+
+def setting(store: Path | None = None, **more: dict[str, Any]) -> DriveSetting:
+    return DriveSetting(packed_route(0), {"route_id": 0}, store=store, more=more)
 
 
 def driven(
-    fmus: Mapping[str, Fmu], phase: Phase, chosen: Setting, length_m: float | None = None
+    fmus: Mapping[str, Fmu],
+    phase: Phase,
+    chosen: DriveSetting,
+    length_m: float | None = None,
+    step_s: float = STEP_S,
 ) -> Drive:
-    course = chosen.course(lambda _: None)
-    if length_m is not None:
-        course = replace(course, length_m=length_m)
-    return drive(fmus, values_of(phase, chosen), course)
+    return drive(fmus, values_of(phase, chosen), length_m or chosen.length_m, step_s)
 
 
 @pytest.fixture(scope="module")
@@ -103,7 +107,7 @@ def test_ends_that_differ_in_unit_are_not_connected(fmus: dict[str, Fmu]) -> Non
 
 def test_the_base_function_keeps_limits_and_profile(hands_off: Drive) -> None:
     recording, arrays = hands_off.recording, route_arrays(packed_route(0))
-    assert (hands_off.arrived, hands_off.ending, hands_off.said) == (True, ARRIVED, [])
+    assert (hands_off.arrived, hands_off.ending, hands_off.messages) == (True, ARRIVED, [])
     assert np.all(recording["speed_mps"] < recording["limit_mps"] + TRACKING_MPS)
     active = recording["mode"] == ACTIVE
     assert np.all(active[recording["time_s"] > 1.5])
@@ -229,7 +233,7 @@ def test_the_communication_step_hardly_matters(
     for phase, tolerance in ((PHASES["A3"], hands_off_mps), (PHASES["A1"], intervening_mps)):
         speeds = []
         for step in (0.01, step_s):
-            recording = driven(fmus, phase, setting(step_s=step), length_m).recording
+            recording = driven(fmus, phase, setting(), length_m, step).recording
             speeds.append(np.interp(places, recording["s_m"], recording["speed_mps"]))
         assert np.max(np.abs(speeds[1] - speeds[0])) < tolerance
 
@@ -249,8 +253,8 @@ def test_warnings_of_the_fmus_are_kept(
 ) -> None:
     monkeypatch.delenv("PLDF_PROFILE_STORE", raising=False)
     result = driven(fmus, PHASES["A2"], setting(), 300.0)
-    assert [said.level for said in result.said] == ["warning"]
-    assert "no profile store" in result.said[0].text
+    assert [message.level for message in result.messages] == ["warning"]
+    assert "no profile store" in result.messages[0].text
     assert capsys.readouterr().err == ""
 
 
@@ -258,22 +262,21 @@ def test_a_broken_profile_is_warned_of_and_kept_aside(fmus: dict[str, Fmu], tmp_
     path = ProfileStore(tmp_path).path(1, fingerprint(packed_route(0)))
     path.write_bytes(b"not a profile")
     result = driven(fmus, PHASES["B3"], setting(tmp_path), 300.0)
-    assert [said.level for said in result.said] == ["warning"]
-    assert "the drive goes on with the base profile" in result.said[0].text
+    assert [message.level for message in result.messages] == ["warning"]
+    assert "the drive goes on with the base profile" in result.messages[0].text
     assert [file.read_bytes() for file in ProfileStore(tmp_path).refused()] == [b"not a profile"]
 
 
 def test_a_vehicle_without_power_is_given_up(fmus: dict[str, Fmu]) -> None:
-    weak = setting(step_s=0.1, vehicle={"body.power_max_w": 1.0, "start_s_m": 1000.0})
-    result = driven(fmus, PHASES["A3"], weak)
+    weak = setting(vehicle={"body.power_max_w": 1.0, "start_s_m": 1000.0})
+    result = driven(fmus, PHASES["A3"], weak, step_s=0.1)
     assert not result.arrived
     assert "stood still for 60 s at" in result.ending or "only at" in result.ending
 
 
 def test_progress_is_reported(fmus: dict[str, Fmu]) -> None:
     seen: list[float] = []
-    chosen = setting(step_s=0.1)
-    drive(fmus, values_of(PHASES["A3"], chosen), Course(1500.0, 0.1, seen.append))
+    drive(fmus, values_of(PHASES["A3"], setting()), 1500.0, 0.1, seen.append)
     assert seen[0] == 0.0
     assert seen == sorted(seen)
     assert len(seen) > 1
@@ -281,5 +284,5 @@ def test_progress_is_reported(fmus: dict[str, Fmu]) -> None:
 
 def test_the_working_folder_stays(fmus: dict[str, Fmu]) -> None:
     before = os.getcwd()
-    driven(fmus, PHASES["A3"], setting(step_s=0.1), 100.0)
+    driven(fmus, PHASES["A3"], setting(), 100.0, 0.1)
     assert os.getcwd() == before

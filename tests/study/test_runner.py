@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,57 +21,15 @@ from pldf.build_version import build_version
 from pldf.instance import ModelError
 from pldf.recordings.recording import read_recording
 from pldf.study.drive_row import COLUMNS
+from pldf.study.folder import StudyFolder
 from pldf.study.participants import Participant
 from pldf.study.participants_file import read_participants
-from pldf.study.results import Results
-from pldf.study.runner import Driven, in_processes, on_cluster, run_missing
+from pldf.study.runner import ResultStream, in_processes, run_missing
 from pldf.study.study_file import Study, read_study
-from pldf.study.unit import Done, Job, do_unit
+from pldf.study.unit import Job, ParticipantResult, do_unit
+from small_study import COUNT, opened, write_study
 
-TEXT = """
-title = "a small study"
-[participants]
-count = {count}
-seed = 5
-[drives]
-phases = ["A2", "B1"]
-step_s = 0.05
-[recordings]
-participants = ["P002"]
-"""
-COUNT = 6
 CROWD = 150  # so many that a study of them can be interrupted in the middle
-
-
-def write_study(folder: Path, count: int = COUNT) -> Path:
-    path = folder / "small.toml"
-    path.write_text(TEXT.format(count=count), encoding="utf-8")
-    return path
-
-
-@pytest.fixture(scope="module")
-def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder with ``small.toml`` and its results in ``one``, driven by one process."""
-    folder = tmp_path_factory.mktemp("finished")
-    study = write_study(folder)
-    assert cli.main(["study", str(study), "--out", str(folder / "one"), "--jobs", "1"]) == 0
-    return folder
-
-
-@pytest.fixture(scope="module")
-def expected(finished: Path) -> dict[str, bytes]:
-    return files(finished / "one")
-
-
-@pytest.fixture
-def study(tmp_path: Path) -> Study:
-    return read_study(write_study(tmp_path))
-
-
-def opened(study: Study, out: Path) -> Results:
-    results = Results(study, out, "kernels")
-    results.open(restart=False)
-    return results
 
 
 def test_what_is_written(finished: Path, expected: dict[str, bytes]) -> None:
@@ -133,8 +91,8 @@ def test_missing_fmus_leave_nothing_behind(
     assert not (tmp_path / "out").exists()
 
 
-def interrupted_after(count: int) -> Callable[[Job, list[Participant]], Driven]:
-    def run(job: Job, participants: list[Participant]) -> Driven:
+def interrupted_after(count: int) -> Callable[[Job, list[Participant]], ResultStream]:
+    def run(job: Job, participants: list[Participant]) -> ResultStream:
         for one in participants[:count]:
             yield do_unit(job, one)
         raise KeyboardInterrupt
@@ -147,17 +105,17 @@ def test_an_interrupted_study_goes_on_where_it_was(
 ) -> None:
     driven: list[str] = []
 
-    def note(done: Done) -> None:
+    def note(done: ParticipantResult) -> None:
         driven.append(done.participant)
 
     for count in (2, 0, 3):
-        results = opened(study, tmp_path / "out")
+        folder = opened(study, tmp_path / "out")
         with pytest.raises(KeyboardInterrupt):
-            run_missing(results, Job(study.settings), interrupted_after(count), note)
-        assert not results.complete
-        assert len(results.missing()) == COUNT - len(driven)
-    results = opened(study, tmp_path / "out")
-    run_missing(results, Job(study.settings), in_processes(1), note)
+            run_missing(folder, Job(study.settings), interrupted_after(count), note)
+        assert not folder.complete
+        assert len(folder.missing()) == COUNT - len(driven)
+    folder = opened(study, tmp_path / "out")
+    run_missing(folder, Job(study.settings), in_processes(1), note)
     assert sorted(driven) == [one.id for one in study.participants]
     assert files(tmp_path / "out") == expected
     # Nothing is left to do.
@@ -194,8 +152,8 @@ def test_ctrl_c_and_a_killed_study_lose_nothing(how: signal.Signals, tmp_path: P
             "the same command goes on with the others",
             "pldf: interrupted",
         ]
-    results = Results(read_study(study), out, "kernels")
-    assert len(results.missing()) == CROWD - len(kept)
+    folder = StudyFolder(read_study(study), out)
+    assert len(folder.missing()) == CROWD - len(kept)
     assert cli.main([*arguments, "1"]) == 0
     with (out / "drives.csv").open() as file:
         drives = [(row["participant"], row["phase"]) for row in csv.DictReader(file)]
@@ -214,11 +172,11 @@ class Deadly:
 
 
 def test_a_dying_process_is_an_error_that_says_what_to_do(study: Study, tmp_path: Path) -> None:
-    results = opened(study, tmp_path / "out")
+    folder = opened(study, tmp_path / "out")
     deadly: Any = Deadly(study.settings)
     with pytest.raises(ModelError, match="start again to go on"):
-        run_missing(results, deadly, in_processes(2), lambda _: None)
-    assert len(results.missing()) == COUNT
+        run_missing(folder, deadly, in_processes(2), lambda _: None)
+    assert len(folder.missing()) == COUNT
 
 
 def test_a_failing_drive_stops_the_study_with_its_name(
@@ -234,95 +192,3 @@ def test_a_failing_drive_stops_the_study_with_its_name(
     told = capsys.readouterr().err
     assert "drive A1 was given up: the vehicle stood still for 60 s" in told
     assert told.count("\n") == 1
-
-
-def test_results_of_another_study_are_not_mixed(
-    finished: Path, expected: dict[str, bytes], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    out = tmp_path / "out"
-    other = write_study(tmp_path, count=2)
-    assert cli.main(["study", str(other), "--out", str(out)]) == 0
-    again = ["study", str(finished / "small.toml"), "--out", str(out), "--jobs", "1"]
-    before = files(out)
-    assert cli.main(again) == 1
-    assert "results of another study or version (study.toml differs)" in capsys.readouterr().err
-    assert files(out) == before
-    assert cli.main([*again, "--restart"]) == 0
-    assert files(out) == expected
-
-
-def test_a_folder_of_others_is_left_alone(
-    finished: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (tmp_path / "drives.csv").write_text("mine")
-    arguments = ["study", str(finished / "small.toml"), "--out", str(tmp_path)]
-    for more in ([], ["--restart"]):
-        assert cli.main([*arguments, *more]) == 1
-        assert "not from a study of participants" in capsys.readouterr().err
-    assert files(tmp_path) == {"drives.csv": b"mine"}
-
-
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ["--restart"],
-        ["--fmu"],
-        ["FILE", "--seed", "3"],
-        ["FILE", "--set", "wish.offset_mps=1"],
-        ["FILE", "--jobs", "0"],
-        ["FILE", "--fmus", "somewhere"],
-        ["FILE", "--fmu", "native", "--scheduler", "tcp://nowhere:1"],
-    ],
-)
-def test_wrong_usage(finished: Path, arguments: list[str]) -> None:
-    file = str(finished / "small.toml")
-    with pytest.raises(SystemExit) as caught:
-        cli.main(["study", *(file if word == "FILE" else word for word in arguments)])
-    assert caught.value.code == 2
-
-
-@pytest.fixture(scope="module")
-def cluster() -> Iterator[Any]:
-    distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
-    ) as found:
-        yield found
-
-
-def test_a_cluster_gives_the_same_bytes(
-    cluster: Any, finished: Path, expected: dict[str, bytes], tmp_path: Path
-) -> None:
-    file, out = str(finished / "small.toml"), tmp_path / "out"
-    address = cluster.scheduler_address
-    assert cli.main(["study", file, "--out", str(out), "--scheduler", address]) == 0
-    assert files(out) == expected
-
-
-def test_a_killed_worker_of_a_cluster_loses_nothing(cluster: Any, tmp_path: Path) -> None:
-    study = read_study(write_study(tmp_path, count=40))
-    results = opened(study, tmp_path / "out")
-    victims = [worker.process.pid for worker in cluster.workers.values()][:1]
-    seen: list[str] = []
-
-    def kill_in_the_middle(done: Done) -> None:
-        seen.append(done.participant)
-        if len(seen) == 5:
-            os.kill(victims.pop(), signal.SIGKILL)
-
-    run = on_cluster(cluster.scheduler_address)
-    run_missing(results, Job(study.settings), run, kill_in_the_middle)
-    assert not victims
-    assert sorted(seen) == [one.id for one in study.participants]
-    local = opened(study, tmp_path / "local")
-    run_missing(local, Job(study.settings), in_processes(2), lambda _: None)
-    assert files(tmp_path / "out") == files(tmp_path / "local")
-
-
-def test_a_scheduler_that_does_not_answer_is_an_error(
-    finished: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: Any
-) -> None:
-    monkeypatch.setattr("pldf.study.runner._ANSWER_S", 0.2)
-    file, out = str(finished / "small.toml"), str(tmp_path / "out")
-    assert cli.main(["study", file, "--out", out, "--scheduler", "tcp://127.0.0.1:1"]) == 1
-    assert "pldf: --scheduler tcp://127.0.0.1:1: " in capsys.readouterr().err

@@ -15,7 +15,7 @@ from pldf.cosim.master import connections
 from pldf.instance import ModelError
 from pldf.recordings.interventions import rates_of
 from pldf.recordings.recording import COLUMNS
-from pldf.roads import route_arrays
+from pldf.roads import open_road, route_arrays
 from pldf.study import loop
 from pldf.study.participants import (
     DRIVER_SIGNALS,
@@ -23,9 +23,8 @@ from pldf.study.participants import (
     Participant,
     StudySettings,
     order_of,
-    seed_of,
 )
-from pldf.study.phases import PHASES, choose_route
+from pldf.study.phases import PHASES, seed_of_drive
 from pldf.study.simulation import prepared, simulate_participant
 from pldf.study.through_fmus import drive_participant
 
@@ -42,7 +41,7 @@ CAREFUL = Participant(
 
 def settings(*phases: str, recorded: tuple[str, ...] = (), step_s: float = 0.01) -> StudySettings:
     return StudySettings(
-        *choose_route("study"),
+        road=open_road("study"),
         phases=tuple(PHASES[name] for name in phases or PHASES),
         step_s=step_s,
         recorded=frozenset(recorded),
@@ -81,7 +80,7 @@ def test_the_fmus_give_the_same_to_the_bit(
         chosen, function={"learning.stretch_factor": 0.6}, vehicle={"body.mass_kg": 1900.0}
     )
     in_process = simulate_participant(chosen, participant)
-    assert_same(in_process, drive_participant(fmus, chosen, participant))
+    assert_same(in_process, drive_participant(fmus, chosen, participant, lambda _: None))
     assert in_process[0].row.interventions > 0
     assert in_process[-1].row.wish_error_mps < in_process[0].row.wish_error_mps
 
@@ -158,8 +157,8 @@ def test_an_even_participant_drives_b_first_when_counterbalanced() -> None:
 
 def test_seeds_stay_in_the_range_of_the_fmu() -> None:
     assert "seed" not in DRIVER_SIGNALS  # it belongs to the drive, not to the driver
-    assert [seed_of(CAREFUL, drive) for drive in range(3)] == [999_999_999, 0, 1]
-    assert seed_of(BOLD, 2) == 44
+    assert [seed_of_drive(CAREFUL.seed, drive) for drive in range(3)] == [999_999_999, 0, 1]
+    assert seed_of_drive(BOLD.seed, 2) == 44
 
 
 def test_a_parameter_out_of_range_is_named_with_its_participant() -> None:

@@ -12,7 +12,7 @@ from pldf.study.participants_file import participants_csv, read_participants
 from pldf.study.phases import PHASES
 from pldf.study.population import sample_participants
 from pldf.study.study_file import PACKAGED, Study, read_study, study_path
-from pldf.study.study_text import line_of
+from pldf.study.toml_file import line_of
 
 PAPER = study_path("paper")
 
@@ -88,7 +88,7 @@ def test_everything_can_be_said(tmp_path: Path) -> None:
         "learning.stretch_time_mode": 1,
     }
     assert said.settings.vehicle == {"grade_from_route": 0}
-    assert said.settings.road == {"route_file": str((tmp_path / "road.csv").resolve())}
+    assert said.settings.road.file == tmp_path / "road.csv"
     assert said.settings.recorded == {"P001", "P003"}
     assert [one.id for one in said.participants] == ["P001", "P002", "P003"]
     for one in said.participants:

@@ -16,7 +16,9 @@ from ..cosim.fmu import Fmu, Value
 from ..cosim.master import PARTS, STEP_S, connections
 from ..instance import ModelError
 from ..kernel.codes import LEARN_FAITHFUL
-from ..study.phases import PHASES, Phase, Setting, choose_route, values_of
+from ..roads import packed_route
+from ..roads.load import STUDY_ROAD_ID
+from ..study.phases import PHASES, DriveSetting, Phase, seed_of_drive, values_of
 from . import ssp
 from .archive import write_archive
 
@@ -62,7 +64,10 @@ def sources(fmus: Mapping[str, Fmu]) -> dict[str, bytes]:
 
 def start_values(phase: Phase, drive: int) -> dict[str, dict[str, Value]]:
     """Return the values of a drive on the study's road, without enumerations, by part and name."""
-    values = values_of(phase, Setting(*choose_route("study")), drive)
+    setting = DriveSetting(
+        packed_route(STUDY_ROAD_ID), {"route_id": STUDY_ROAD_ID}, seed=seed_of_drive(1, drive)
+    )
+    values = values_of(phase, setting)
     portable = {part: dict(chosen) for part, chosen in values.items()}
     learn = portable["pldf"].pop("learn")
     portable["pldf"]["learn_faithful"] = int(learn == LEARN_FAITHFUL)

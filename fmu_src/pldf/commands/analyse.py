@@ -15,7 +15,7 @@ from ..analysis.analysis import RATES, Analysis, StudyFolder, analyse
 from ..analysis.analysis_tables import write_tables
 from ..analysis.published import DRIVERS, TESTS, published_means
 from ..analysis.questionnaire import SCALES
-from ..study.phases import choose_route
+from .shared.road import add_road, chosen_road
 
 EXAMPLE: Final = (
     "pldf analyse out --report report.html\n"
@@ -43,9 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--without", action="append", default=[], metavar="PARTICIPANT",
         help="leave this participant out (repeatable)",
     )  # fmt: skip
-    parser.add_argument(
-        "--route", help="route driven: .xodr or .csv, or 'study'; needed if recordings lack columns"
-    )
+    add_road(parser, "road driven, needed if recordings lack columns")
     parser.add_argument(
         "--out", type=Path, metavar="FOLDER", help="tables as CSV (default: FOLDER/analysis)"
     )
@@ -67,8 +65,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Analyse, write the tables, print what was found and where it is."""
-    route = choose_route(options.route)[0] if options.route else None
-    source = StudyFolder(options.folder, route, frozenset(options.without))
+    road = chosen_road(options)
+    source = StudyFolder(options.folder, road.route if road else None, frozenset(options.without))
     with Progress(transient=True) as bar:
         task = bar.add_task("recordings", total=None)
         analysis = analyse(source, lambda done, all_: bar.update(task, completed=done, total=all_))

@@ -11,23 +11,25 @@ import numpy as np
 
 from ..cosim.fmu import Value
 from ..cosim.master import Drive, drive
+from ..cosim.road_values import road_values
 from ..instance import ModelError
 from ..kernel.codes import LEARN
 from ..kernel.units import KMH_PER_MPS
 from ..profiles.store import STORE_VARIABLE, ProfileStore
 from ..recordings.recording import write_recording
 from ..roads import fingerprint
-from ..study.phases import PHASES, SCRIPT, Phase, Setting, choose_route, values_of
-from .coupled import (
+from ..study.phases import PHASES, SCRIPT, DriveSetting, Phase, values_of
+from .shared.coupling import (
     NATIVE_IF_GOOD,
     add_coupling,
     add_fmu,
     chosen_fmus,
     chosen_values,
-    progress_bar,
+    print_warnings,
     require_no_errors,
-    tell,
 )
+from .shared.progress import progress_bar
+from .shared.road import required_road
 
 EXAMPLE: Final = (
     "pldf drive --phase A2 --store profiles --out out/A2.csv\n"
@@ -77,27 +79,30 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Drive, write recording and picture, print rates and what was learned."""
     phase = _phase(options)
-    route, road = choose_route(options.route)
+    road = required_road(options)
     csv = options.out if options.out.suffix.lower() == ".csv" else options.out / "drive.csv"
     with chosen_fmus(options) as fmus:
-        setting = Setting(
-            route, road, options.driver_id, options.seed, options.store, options.step,
+        setting = DriveSetting(
+            road.route, road_values(road, fmus["pldf"].folder.parent),
+            options.driver_id, options.seed, options.store,
             _with_script(options, chosen_values(fmus, options.settings)),
         )  # fmt: skip
-        with progress_bar(route.length_m) as bar:
-            course = setting.course(lambda s_m: bar.update(bar.task_ids[0], completed=s_m / 1e3))
-            driven = drive(fmus, values_of(phase, setting), course)
+        with progress_bar(phase.name, road.route.length_m / 1e3, "km") as bar:
+            done = drive(
+                fmus, values_of(phase, setting), setting.length_m, options.step,
+                lambda s_m: bar.update(bar.task_ids[0], completed=s_m / 1e3),
+            )  # fmt: skip
     csv.parent.mkdir(parents=True, exist_ok=True)
-    write_recording(csv, driven.recording)
-    tell(driven.said)
+    write_recording(csv, done.recording)
+    print_warnings(done.messages)
     print(f"recording  {csv}")
-    _plot(options.plot or csv.with_suffix(".png"), driven, phase.name)
-    _print_rates(driven)
-    require_no_errors(driven.said)
+    _plot(options.plot or csv.with_suffix(".png"), done, phase.name)
+    _print_rates(done)
+    require_no_errors(done.messages)
     if phase.learn:
         _print_learned(setting)
-    if not driven.arrived:
-        raise ModelError(f"the drive was given up: the vehicle {driven.ending}")
+    if not done.arrived:
+        raise ModelError(f"the drive was given up: the vehicle {done.ending}")
 
 
 def _phase(options: argparse.Namespace) -> Phase:
@@ -133,20 +138,20 @@ def _with_script(
     return {**more, "driver": {**script, **more.get("driver", {})}}
 
 
-def _plot(path: Path, driven: Drive, name: str) -> None:
+def _plot(path: Path, done: Drive, name: str) -> None:
     from ..report.figures import one_drive  # noqa: PLC0415 - slow to import, not always used
     from ..report.paper import save  # noqa: PLC0415
 
-    rates = driven.outputs
+    rates = done.outputs
     title = f"{name}: interventions in {100 * rates['rate.combined']:.0f} % of the time"
-    save(one_drive(driven.recording, title), path)
+    save(one_drive(done.recording, title), path)
     print(f"picture    {path}")
 
 
-def _print_rates(driven: Drive) -> None:
-    time_s = float(driven.recording["time_s"][-1])
-    rates = driven.outputs
-    print(f"time       {int(time_s) // 60}:{time_s % 60:04.1f} min, {driven.ending}")
+def _print_rates(done: Drive) -> None:
+    time_s = float(done.recording["time_s"][-1])
+    rates = done.outputs
+    print(f"time       {int(time_s) // 60}:{time_s % 60:04.1f} min, {done.ending}")
     print(
         f"rates      pedal {rates['rate.pedal']:.1%}, set speed {rates['rate.set_speed']:.1%}, "
         f"combined {rates['rate.combined']:.1%}"
@@ -154,7 +159,7 @@ def _print_rates(driven: Drive) -> None:
     print(f"pedal      {rates['drive.interventions']:.0f} interventions")
 
 
-def _print_learned(setting: Setting) -> None:
+def _print_learned(setting: DriveSetting) -> None:
     folder = _store(setting.store)
     if not folder:
         print("learned    nothing kept: there is no profile store")

@@ -9,7 +9,7 @@ from typing import Final
 from ..recordings.exports import write_mdf4, write_parquet
 from ..recordings.recording import read_recording
 
-EXAMPLE: Final = "pldf export out/recordings/B1.csv --parquet b1.parquet --mdf4 b1.mf4"
+EXAMPLE: Final = "pldf export out/recordings/P001_B1.csv --parquet b1.parquet --mdf4 b1.mf4"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -11,20 +11,18 @@ from ..kernel.units import KMH_PER_MPS
 from ..profiles.store import read_profile, write_profile
 from ..recordings.offline import Learned, explain, learn_from
 from ..recordings.recording import read_recording
-from ..roads import open_route
-from .options import add_settings, apply_settings
+from .shared.road import add_road, required_road
+from .shared.settings import add_settings, apply_settings
 
 EXAMPLE: Final = (
-    "pldf learn --route study --recording out/B1.csv --out b1.pldf\n"
-    "  pldf learn --route study --recording out/B2.csv --profile-in b1.pldf --out b2.pldf --json"
+    "pldf learn --route study --recording out/recordings/P001_B1.csv --out b1.pldf\n"
+    "  pldf learn --route study --recording b2.csv --profile-in b1.pldf --out b2.pldf --json"
 )
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``pldf learn``."""
-    parser.add_argument(
-        "--route", required=True, help="route driven: .xodr or .csv file, or 'study'"
-    )
+    add_road(parser, required=True)
     parser.add_argument(
         "--recording",
         required=True,
@@ -40,7 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Learn, write the profile, say what was learned."""
-    route = open_route(options.route)
+    route = required_road(options).route
     stored = read_profile(options.profile_in) if options.profile_in else None
     function = DrivingFunction()
     apply_settings(function.record, options.settings)

@@ -12,11 +12,12 @@ from ..instance import ModelError
 from ..profiles.store import read_profile
 from ..recordings.interventions import rates_of
 from ..recordings.recording import Recording, completed, read_recording
-from ..study.phases import choose_route
+from ..roads import Road, open_route
+from .shared.road import add_road, chosen_road
 
 EXAMPLE: Final = (
-    "pldf plot out/recordings/B1.csv --out b1.png\n"
-    "  pldf plot out/recordings/A1.csv out/recordings/B2.csv --out compared.png"
+    "pldf plot out/recordings/P001_B1.csv --out b1.png\n"
+    "  pldf plot out/recordings/P001_A1.csv out/recordings/P001_B2.csv --out compared.png"
 )
 
 _NEEDED: Final = ("limit_mps", "base_mps", "profile_mps", "set_speed_offset_mps")
@@ -31,9 +32,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--profile", type=Path, metavar="P.pldf", help="draw the newest state of this profile too"
     )
-    parser.add_argument(
-        "--route", help="route driven, for recordings without limits: .xodr or .csv, or 'study'"
-    )
+    add_road(parser, "road driven, for recordings without limits")
     parser.add_argument(
         "--out", type=Path, metavar="PNG", help="picture (default: beside the first recording)"
     )
@@ -47,7 +46,8 @@ def run(options: argparse.Namespace) -> None:
 
     if len(options.recordings) > _COMPARED_MAX:
         options.wrong_usage(f"at most {_COMPARED_MAX} recordings fit into one picture")
-    recordings = [_complete(path, options.route) for path in options.recordings]
+    road = chosen_road(options)
+    recordings = [_complete(path, road) for path in options.recordings]
     named = dict(zip(names_of(options.recordings), recordings, strict=True))
     profile = read_profile(options.profile) if options.profile else None
     shares = [f"{name} {100 * rates_of(r).combined:.0f} %" for name, r in named.items()]
@@ -70,14 +70,14 @@ def names_of(paths: Sequence[Path]) -> list[str]:
     ]
 
 
-def _complete(path: Path, route: str | None) -> Recording:
+def _complete(path: Path, road: Road | None) -> Recording:
     """Read a recording; derive what a picture needs and the recording lacks."""
     recording = read_recording(path)
     missing = [name for name in _NEEDED if name not in recording]
-    if missing and route is None:
+    if missing and road is None:
         raise ModelError(
             f"{path}: no column {', '.join(missing)}; name the route driven with --route"
         )
     function = DrivingFunction()
-    function.prepare(choose_route(route or "study")[0])
+    function.prepare(road.route if road else open_route("study"))
     return completed(recording, function.route, function.profile)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,8 +11,9 @@ from typing import Final
 from ..cosim.prepared import SUFFIX, write_prepared_route
 from ..instance import ModelError
 from ..kernel.units import KMH_PER_MPS
-from ..roads import fingerprint, open_route, write_route_csv
+from ..roads import fingerprint, write_route_csv
 from ..route_facts import BINDING_MPS, RouteFacts, route_facts
+from .shared.road import add_road, required_road
 
 EXAMPLE: Final = "pldf route study --plot study.png"
 
@@ -23,9 +23,7 @@ _PICTURES: Final = (".png", ".pdf", ".svg")
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument(
-        "file", metavar="FILE", help="OpenDRIVE (.xodr) or route CSV; 'study' = the shipped road"
-    )
+    add_road(parser, "what to show", by_position=True)
     parser.add_argument(
         "--plot", metavar="PNG", type=_picture, help="draw limits, curvature and base profile"
     )
@@ -35,22 +33,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="write the route as CSV; as OUT.prepared: for route_file of a native FMU",
     )
-    parser.add_argument(
-        "--start-road", metavar="ID", help="OpenDRIVE road that the route starts with"
-    )
-    parser.add_argument(
-        "--default-limit", metavar="KMH", type=_limit, help="limit where the road states none"
-    )
 
 
 def run(options: argparse.Namespace) -> None:
     """Print the summary; draw and export if asked to."""
-    default = options.default_limit
-    route = open_route(
-        options.file,
-        start_road=options.start_road,
-        default_limit_mps=None if default is None else default / KMH_PER_MPS,
-    )
+    route = required_road(options).route
     facts = route_facts(route)
     print("\n".join(_summary(facts)))
     if options.export is not None:
@@ -100,13 +87,3 @@ def _picture(text: str) -> Path:
     if path.suffix.lower() not in _PICTURES:
         raise argparse.ArgumentTypeError(f"{text!r} must end in {', '.join(_PICTURES)}")
     return path
-
-
-def _limit(text: str) -> float:
-    try:
-        limit = float(text)
-    except ValueError:
-        limit = math.nan
-    if not 0.0 < limit <= 300.0:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a speed above 0 and up to 300 km/h")
-    return limit

@@ -1,177 +1,175 @@
-"""``pldf study``: a study file's participants, or the six drives for one driver."""
+"""``pldf study``: the participants of a study file, or one driver, on all cores or a cluster."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+import os
+import sys
+from collections.abc import Mapping
+from contextlib import ExitStack
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
-from rich.console import Console
-from rich.progress import Progress
-from rich.table import Table
-
-from ..analysis.published import PUBLISHED
 from ..cosim.which_fmus import USUAL_FOLDER
-from ..profiles.store import StoredProfile
-from ..recordings.interventions import Rates
-from ..study.phases import PHASES, Phase, Setting, choose_route
-from ..study.run import Driven, mean_rates, run_study
-from .coupled import (
+from ..study.folder import DRIVES, PARTICIPANTS, StudyFolder
+from ..study.runner import in_processes, on_cluster, run_missing
+from ..study.study_file import ONE_DRIVER, Study, changes_of, read_study, study_path
+from ..study.toml_file import Key
+from ..study.unit import Job, ParticipantResult
+from .shared.coupling import (
     NATIVE_IF_GOOD,
     add_coupling,
     add_fmu,
     chosen_fmus,
-    chosen_values,
-    progress_bar,
-    tell,
+    print_warnings,
 )
-from .participants import add_running, run_file
+from .shared.progress import progress_bar
+from .shared.road import default_limit_mps
+from .shared.settings import split_settings
 
 EXAMPLE: Final = (
-    "pldf study paper --jobs 2\n  pldf study --out out_careful --set wish.offset_mps=-2 --seed 7"
+    "pldf study\n"
+    "      one driver through the six drives, into out\n"
+    "  pldf study paper --jobs 2\n"
+    "      the paper's study, into out/paper\n"
+    "  pldf study --out out_careful --set wish.offset_mps=-2 --seed 7"
 )
 
-# Arguments that a study file takes the place of.
-_OF_ONE_DRIVER: Final = {
-    "route": "--route",
-    "driver_id": "--driver-id",
-    "seed": "--seed",
-    "step": "--step",
-    "settings": "--set",
+# Option -> what it is called, and the key of the study file that it stands for.
+_OF_ONE_DRIVER: Final[Mapping[str, tuple[str, Key]]] = {
+    "road": ("--route", ("road", "route")),
+    "start_road": ("--start-road", ("road", "start_road")),
+    "default_limit": ("--default-limit", ("road", "default_limit_mps")),
+    "driver_id": ("--driver-id", ("participants", "first")),
+    "seed": ("--seed", ("participants", "seed")),
+    "step": ("--step", ("drives", "step_s")),
+    "settings": ("--set", ("function, vehicle or driver", "")),
 }
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``pldf study``."""
-    add_running(parser)
     parser.add_argument(
-        "--out", type=Path, metavar="FOLDER",
-        help="where everything is written (default: FILE's output; without FILE: out)",
+        "file", nargs="?", metavar="FILE",
+        help="study file (TOML), or 'paper', the paper's study; without it: one driver through "
+        f"the FMUs ('{ONE_DRIVER}', a study file too), with figures",
     )  # fmt: skip
-    add_coupling(parser)
-    add_fmu(parser, f"{NATIVE_IF_GOOD}; with FILE none, but the same source in process, quickest")
+    parser.add_argument(
+        "--out", type=Path, metavar="FOLDER", help="where everything is written (default: FILE's)"
+    )
+    parser.add_argument(
+        "--jobs", type=_jobs, default=_cores(), metavar="N",
+        help="processes (default: all cores); the results are the same",
+    )  # fmt: skip
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS",
+        help="drive on the Dask cluster with this scheduler, e.g. tcp://host:8786",
+    )  # fmt: skip
+    parser.add_argument(
+        "--restart", action="store_true", help="forget what was driven before and start anew"
+    )
+    add_fmu(parser, f"what FILE says; FMUs are {NATIVE_IF_GOOD}")
+    one_driver = parser.add_argument_group(
+        "without FILE", "written into the study file of the one driver, beside the results"
+    )
+    add_coupling(one_driver)
     usual = {name: parser.get_default(name) for name in _OF_ONE_DRIVER}
     parser.set_defaults(refuse=parser.error, usual=usual)
 
 
 def run(options: argparse.Namespace) -> None:
-    """Drive a study file, or one driver with figures."""
-    if options.scheduler and options.fmu:
-        options.refuse("--fmu drives on this machine only, not with --scheduler")
-    if options.file is not None:
-        for name, value in options.usual.items():
-            if getattr(options, name) != value:
-                options.refuse(f"{_OF_ONE_DRIVER[name]} is for one driver; write it into FILE")
-        if options.fmus != USUAL_FOLDER and not options.fmu:
-            options.refuse("--fmus needs --fmu: FILE is driven in process, with the same results")
-        run_file(options)
-    elif options.scheduler or options.restart:
-        options.refuse("--scheduler and --restart need a study FILE")
+    """Drive what is missing of a study; print where to look."""
+    study = _study(options)
+    if (options.fmu and options.scheduler) or (options.scheduler and study.through == "fmus"):
+        options.refuse("FMUs drive on this machine only, not with --scheduler")
+    through_fmus = options.fmu or study.through == "fmus"
+    if options.fmus != USUAL_FOLDER and not through_fmus:
+        options.refuse("--fmus needs --fmu: FILE is driven in process, with the same results")
+    out: Path = options.out or study.out
+    with ExitStack() as stack:
+        fmus = stack.enter_context(chosen_fmus(options)) if through_fmus else None
+        folder = StudyFolder(study, out, fmus)
+        folder.open(options.restart)
+        _drive(options, folder, Job(study.settings, fmus))
+    drives = len(study.participants) * len(study.settings.phases)
+    print(f"{study.title}: {len(study.participants)} participants, {drives} drives")
+    print(f"Drives are in {out / DRIVES}, drivers in {out / PARTICIPANTS}.")
+    if len(study.participants) == 1 and study.settings.recorded:
+        _show(study, out)
     else:
-        options.out = options.out or Path("out")
-        _run_one_driver(options)
+        print(f"Look at the result with: pldf analyse {out}")
 
 
-def _run_one_driver(options: argparse.Namespace) -> None:
-    """Drive all phases, draw them, print the table and where to look."""
-    route, road = choose_route(options.route)
-    phases = list(PHASES.values())
-    with chosen_fmus(options) as fmus:
-        setting = Setting(
-            route, road, options.driver_id, options.seed, options.out / "profiles", options.step,
-            chosen_values(fmus, options.settings),
-        )  # fmt: skip
-        with progress_bar(len(phases) * route.length_m) as bar:
-            driven, profile = run_study(
-                fmus, phases, setting, options.out,
-                lambda phase, s_m: _show(bar, phases.index(phase) * route.length_m + s_m, phase),
-            )  # fmt: skip
-    tell(said for one in driven for said in one.drive.said)
-    figures = _draw(driven, profile, options.out)
-    Console().print(_table(driven))
-    print(f"Look at {', '.join(str(figure) for figure in figures)}.")
-    print(
-        f"Numbers are in {options.out / 'rates.csv'}, recordings in {options.out / 'recordings'},"
-    )
-    print(f"profiles in {options.out / 'profiles'} and {options.out / 'profile_after'}.")
+def _study(options: argparse.Namespace) -> Study:
+    if options.file is None:
+        return read_study(study_path(ONE_DRIVER), _changes(options))
+    for name, (option, key) in _OF_ONE_DRIVER.items():
+        if getattr(options, name) != options.usual[name]:
+            options.refuse(f"{option} is for one driver; write it into FILE, table [{key[0]}]")
+    return read_study(study_path(options.file))
 
 
-def _show(bar: Progress, driven_m: float, phase: Phase) -> None:
-    bar.update(
-        bar.task_ids[0], completed=driven_m / 1000.0, description=f"{phase.name} {phase.about}"
-    )
-
-
-def _draw(driven: Sequence[Driven], profile: StoredProfile | None, out: Path) -> list[Path]:
-    from ..report import figures  # noqa: PLC0415 - slow to import
-    from ..report.paper import save  # noqa: PLC0415
-
-    by_name = {one.phase.name: one for one in driven}
-    drawn = {
-        "drives.png": figures.drives(
-            {name: one.recording for name, one in by_name.items()},
-            {name: _panel_title(one) for name, one in by_name.items()},
-            _headline(driven),
-        ),
-        "rates.png": figures.rate_bars(
-            {name: one.rates for name, one in by_name.items()},
-            "Share of each drive with an intervention",
-        ),
+def _changes(options: argparse.Namespace) -> dict[Key, Any]:
+    """Return what the options change in the study file of the one driver."""
+    values = {**vars(options), "default_limit": default_limit_mps(options)}
+    changed = {
+        key: values[name]
+        for name, (_, key) in _OF_ONE_DRIVER.items()
+        if name != "settings" and getattr(options, name) != options.usual[name]
     }
-    if profile is not None:
-        drawn["profile.png"] = figures.development(
-            profile,
-            [one.phase.name for one in driven if one.phase.learn],
-            {driven[0].phase.name: driven[0].recording},
-            "What the function has learned after each drive",
+    return {**changed, **changes_of(split_settings(options.settings))}
+
+
+def _drive(options: argparse.Namespace, folder: StudyFolder, job: Job) -> None:
+    """Drive what is missing, with a bar; say what the FMUs warned of."""
+    count, phases = len(folder.study.participants), len(job.settings.phases)
+    done = count - len(folder.missing())
+    results: list[ParticipantResult] = []
+    with progress_bar("drives", count * phases, "") as bar:
+
+        def show(drives: float) -> None:
+            bar.update(bar.task_ids[0], completed=(done + len(results)) * phases + drives)
+
+        def note(result: ParticipantResult) -> None:
+            results.append(result)
+            show(0.0)
+
+        show(0.0)
+        run = (
+            on_cluster(options.scheduler) if options.scheduler else in_processes(options.jobs, show)
         )
-    for name, figure in drawn.items():
-        save(figure, out / name)
-    return [out / name for name in drawn]
+        try:
+            run_missing(folder, job, run, note)
+        except KeyboardInterrupt:
+            bar.stop()
+            print(
+                f"pldf: {count - len(folder.missing())} of {count} participants are done; "
+                "the same command goes on with the others",
+                file=sys.stderr,
+            )
+            raise
+    print_warnings(warning for result in results for warning in result.warnings)
 
 
-def _headline(driven: Sequence[Driven]) -> str:
-    base, learned = (100 * mean_rates(driven, group).combined for group in PUBLISHED)
-    return (
-        f"One driver intervenes in {base:.0f} % of the time with the base function, "
-        f"in {learned:.0f} % after learning"
-    )
+def _show(study: Study, out: Path) -> None:
+    """Draw the drives of the one participant and print a table of them."""
+    from rich.console import Console  # noqa: PLC0415 - as the next
+
+    from ..report.one_driver import draw_one_driver, table_of  # noqa: PLC0415 - slow to import
+
+    figures = draw_one_driver(study, out)
+    Console().print(table_of(study, out))
+    print(f"Look at {', '.join(map(str, figures))}.")
+    print(f"Recordings are in {out / 'recordings'}, profiles in {out / 'profiles'}.")
 
 
-def _panel_title(one: Driven) -> str:
-    if not one.phase.intervenes:
-        return one.phase.about
-    pedal, set_speed, combined = (f"{100 * rate:.0f} %" for rate in one.rates)
-    return f"{one.phase.about}: pedal {pedal}, set speed {set_speed}, either {combined} of the time"
+def _cores() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
-def _table(driven: Sequence[Driven]) -> Table:
-    table = Table(
-        title="Pedal interventions and shares of the driving time in %",
-        caption="paper: mean of 43 drivers over both drives with interventions",
-    )
-    for heading in ("Drive", "Profile", "Learns", "Time", "Uses"):
-        table.add_column(heading, justify="right" if heading in ("Time", "Uses") else "left")
-    for heading in ("Pedal", "Set speed", "Either"):
-        table.add_column(heading, justify="right")
-    for one in driven:
-        minutes, seconds = divmod(round(one.time_s), 60)
-        table.add_row(
-            one.phase.name,
-            "learned" if one.phase.apply_learned else "base",
-            "yes" if one.phase.learn else "no",
-            f"{minutes}:{seconds:02d}",
-            str(one.interventions),
-            *_percent(one.rates),
-            end_section=one.phase.name == "A3" or one is driven[-1],
-        )
-    for group, published in PUBLISHED.items():
-        mean = mean_rates(driven, group)
-        table.add_row(f"{group} mean", "", "", "", "", *_percent(mean))
-        table.add_row(f"{group} paper", "", "", "", "", *_percent(published))
-    return table
-
-
-def _percent(rates: Rates) -> list[str]:
-    return [f"{100.0 * rate:.2f}" for rate in rates]
+def _jobs(text: str) -> int:
+    if not text.isdigit() or not 1 <= int(text) <= 1024:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 1 to 1024")
+    return int(text)

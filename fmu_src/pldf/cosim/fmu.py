@@ -30,7 +30,7 @@ _C_TYPES: Final[dict[str, Any]] = {
 }
 
 
-class Said(NamedTuple):
+class FmuMessage(NamedTuple):
     """A message of an FMU's logger; ``fmu`` is the name of the model."""
 
     fmu: str
@@ -39,7 +39,7 @@ class Said(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class BufferElement:
     """Where the value of one variable lies: element ``at`` of a batch's buffer."""
 
     buffer: Any
@@ -159,7 +159,7 @@ class Slave:
         inputs: names of the inputs that ``write`` sets at every communication point.
 
     Attributes:
-        said: messages of the FMU's logger so far.
+        messages: of the FMU's logger so far.
         inputs: where to put the values that ``write`` sets, by name.
         outputs: where the values lie that ``read`` gets, by name.
 
@@ -169,7 +169,7 @@ class Slave:
 
     def __init__(self, fmu: Fmu, part: str, inputs: Iterable[str]) -> None:
         self.fmu = fmu
-        self.said: list[Said] = []
+        self.messages: list[FmuMessage] = []
         self._set, self.inputs = self._batches(inputs)
         self._get, self.outputs = self._batches(s.name for s in fmu.named("output"))
         self.name: str = fmu.description.modelName
@@ -197,13 +197,13 @@ class Slave:
         self._call(self._slave.exitInitializationMode)
 
     def read(self) -> None:
-        """Get all outputs into their places."""
+        """Get all outputs into their buffers."""
         for batch in self._get:
             get = getattr(self._slave, f"fmi2Get{batch.type}")
             self._call(get, self._slave.component, batch.references, batch.count, batch.buffer)
 
     def write(self) -> None:
-        """Set the inputs from their places."""
+        """Set the inputs from their buffers."""
         for batch in self._set:
             put = getattr(self._slave, f"fmi2Set{batch.type}")
             self._call(put, self._slave.component, batch.references, batch.count, batch.buffer)
@@ -239,28 +239,28 @@ class Slave:
         try:
             call(*arguments, **named)
         except FMICallException as problem:
-            errors = [said.text for said in self.said if said.level == "error"]
+            errors = [message.text for message in self.messages if message.level == "error"]
             text = errors[-1] if errors else str(problem)
             raise ModelError(f"{self.name}: {text}") from None
 
     def _hear(self, _: Any, name: bytes, status: int, category: bytes, text: bytes) -> None:
         # The text is a printf format without arguments.
         plain = text.decode("utf-8", "replace").replace("%%", "%")
-        said = Said(self.name, _LEVELS[status], plain)
-        if said not in self.said and not plain.startswith(_WRAPPERS_NOTE):
-            self.said.append(said)
+        message = FmuMessage(self.name, _LEVELS[status], plain)
+        if message not in self.messages and not plain.startswith(_WRAPPERS_NOTE):
+            self.messages.append(message)
 
-    def _batches(self, names: Iterable[str]) -> tuple[list[_Batch], dict[str, Place]]:
+    def _batches(self, names: Iterable[str]) -> tuple[list[_Batch], dict[str, BufferElement]]:
         groups: dict[str, list[str]] = {}
         for name in names:
             kind = self.fmu.signals[name].kind
             groups.setdefault("Integer" if kind == "Enumeration" else kind, []).append(name)
         batches = []
-        places: dict[str, Place] = {}
+        elements: dict[str, BufferElement] = {}
         for c_type, members in groups.items():
             count = len(members)
             references = (ctypes.c_uint32 * count)(*(self.fmu.references[n] for n in members))
             buffer = (_C_TYPES[c_type] * count)()
             batches.append(_Batch(c_type, references, count, buffer))
-            places.update({name: Place(buffer, at) for at, name in enumerate(members)})
-        return batches, places
+            elements.update({name: BufferElement(buffer, at) for at, name in enumerate(members)})
+        return batches, elements

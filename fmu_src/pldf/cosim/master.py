@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, redirect_stderr
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from io import StringIO
 from math import ceil
 from pathlib import Path
@@ -21,7 +21,7 @@ import numpy as np
 from ..instance import ModelError
 from ..kernel.units import KMH_PER_MPS
 from ..recordings.recording import COLUMNS, Recording
-from .fmu import Fmu, Place, Said, Slave, Value, unpack
+from .fmu import BufferElement, Fmu, FmuMessage, Slave, Value, unpack
 from .native_files import readable_values
 
 # The vehicle comes first: the function plans its first outputs from where the vehicle is.
@@ -55,8 +55,7 @@ _SEEN: Final = {
 }
 
 Values = Mapping[str, Mapping[str, Value]]
-Progress = Callable[[float], None]
-Link = tuple[Place, Place]
+Link = tuple[BufferElement, BufferElement]
 Rows = list[list[float]]
 
 
@@ -74,31 +73,16 @@ class Drive:
     Attributes:
         recording: one row per step.
         outputs: outputs of the driving function at the end, by name.
-        said: messages of the FMUs.
+        messages: messages of the FMUs.
         arrived: the vehicle reached the end of the route.
         ending: how the drive ended, for people.
     """
 
     recording: Recording
     outputs: dict[str, float]
-    said: list[Said]
+    messages: list[FmuMessage]
     arrived: bool
     ending: str
-
-
-@dataclass(frozen=True)
-class Course:
-    """How far, how fast and how finely is driven.
-
-    Attributes:
-        length_m: the drive ends when the vehicle is here.
-        step_s: communication step.
-        progress: called now and then with the vehicle's position in m.
-    """
-
-    length_m: float
-    step_s: float = STEP_S
-    progress: Progress = field(default=lambda _: None)
 
 
 @contextmanager
@@ -132,16 +116,16 @@ def connections(fmus: Mapping[str, Fmu]) -> list[Connection]:
             sources.setdefault(signal.name, []).append((part, signal.name))
             if part == "vehicle":
                 sources.setdefault(f"vehicle.{signal.name}", []).append((part, signal.name))
-    found = []
+    wires = []
     for part, fmu in fmus.items():
         for signal in fmu.named("input"):
             feeding = [source for source in sources.get(signal.name, ()) if source[0] != part]
             if len(feeding) > 1:
                 raise ModelError(f"{part}, {signal.name}: more than one output has this name")
             if feeding:
-                found.append(Connection(feeding[0], (part, signal.name)))
-                _require_match(fmus, found[-1])
-    return found
+                wires.append(Connection(feeding[0], (part, signal.name)))
+                _require_match(fmus, wires[-1])
+    return wires
 
 
 def _require_match(fmus: Mapping[str, Fmu], connection: Connection) -> None:
@@ -154,14 +138,26 @@ def _require_match(fmus: Mapping[str, Fmu], connection: Connection) -> None:
         )
 
 
-def drive(fmus: Mapping[str, Fmu], values: Values, course: Course) -> Drive:
-    """Drive ``course`` once.
+def _unwatched(_: float) -> None:
+    """Nobody wants to know where the vehicle is."""
+
+
+def drive(
+    fmus: Mapping[str, Fmu],
+    values: Values,
+    length_m: float,
+    step_s: float = STEP_S,
+    progress: Callable[[float], None] = _unwatched,
+) -> Drive:
+    """Drive once from the start to ``length_m``.
 
     Args:
         fmus: from ``unpacked``.
         values: per part, parameters and unconnected inputs to set, by name; files of roads and
             scripts as for Python FMUs.
-        course: where to stop, and the step.
+        length_m: the drive ends when the vehicle is here.
+        step_s: communication step.
+        progress: called now and then with the vehicle's position in m.
 
     Raises:
         ModelError: an FMU refused a value or a call.
@@ -170,7 +166,7 @@ def drive(fmus: Mapping[str, Fmu], values: Values, course: Course) -> Drive:
     slaves: dict[str, Slave] = {}
     with _silenced(slaves):
         try:
-            return _drive(fmus, slaves, values, course)
+            return _drive(fmus, slaves, values, length_m, step_s, progress)
         finally:
             for slave in slaves.values():
                 slave.free()
@@ -178,7 +174,7 @@ def drive(fmus: Mapping[str, Fmu], values: Values, course: Course) -> Drive:
 
 @contextmanager
 def _silenced(slaves: Mapping[str, Slave]) -> Iterator[None]:
-    """Keep back what the FMUs print on stderr of what their loggers have said already."""
+    """Keep back what the FMUs print on stderr of what their loggers have told already."""
     printed = StringIO()
     try:
         with redirect_stderr(printed):
@@ -186,13 +182,18 @@ def _silenced(slaves: Mapping[str, Slave]) -> Iterator[None]:
     finally:
         rest = printed.getvalue()
         for part, name in PARTS.items():
-            for said in slaves[part].said if part in slaves else ():
-                rest = rest.replace(f"{name} {part!r}: {said.text}\n", "")
+            for message in slaves[part].messages if part in slaves else ():
+                rest = rest.replace(f"{name} {part!r}: {message.text}\n", "")
         sys.stderr.write(rest)
 
 
 def _drive(
-    fmus: Mapping[str, Fmu], slaves: dict[str, Slave], values: Values, course: Course
+    fmus: Mapping[str, Fmu],
+    slaves: dict[str, Slave],
+    values: Values,
+    length_m: float,
+    step_s: float,
+    progress: Callable[[float], None],
 ) -> Drive:
     wires = connections(fmus)
     for part, fmu in fmus.items():
@@ -204,15 +205,15 @@ def _drive(
         for source, target in wires
     ]
     _initialize(slaves, links)
-    rows, ending = _run(slaves, links, course)
-    outputs = {name: float(place.value) for name, place in slaves["pldf"].outputs.items()}
+    rows, ending = _run(slaves, links, length_m, step_s, progress)
+    outputs = {name: float(element.value) for name, element in slaves["pldf"].outputs.items()}
     for slave in slaves.values():
         slave.terminate()
     eligible = float(values.get("pldf", {}).get("eligible", 1))
     return Drive(
-        recording=_recording(rows, course.step_s, eligible),
+        recording=_recording(rows, step_s, eligible),
         outputs=outputs,
-        said=[said for slave in slaves.values() for said in slave.said],
+        messages=[message for slave in slaves.values() for message in slave.messages],
         arrived=ending == ARRIVED,
         ending=ending,
     )
@@ -232,28 +233,34 @@ def _initialize(slaves: Mapping[str, Slave], links: list[Link]) -> None:
         slave.ready()
 
 
-def _run(slaves: Mapping[str, Slave], links: list[Link], course: Course) -> tuple[Rows, str]:
+def _run(
+    slaves: Mapping[str, Slave],
+    links: list[Link],
+    length_m: float,
+    step_s: float,
+    progress: Callable[[float], None],
+) -> tuple[Rows, str]:
     """Step until the drive ends; return what was seen before each step and how it ended."""
     rows: Rows = []
     seen = [slaves[part].outputs[name] for part, name in _SEEN.values()]
     position, speed = (slaves["vehicle"].outputs[name] for name in ("s_m", "speed_mps"))
     moved = 0  # last step at which the vehicle moved
-    time_max_s = STANDSTILL_MAX_S + course.length_m / SLOWEST_MPS
-    for k in range(ceil(time_max_s / course.step_s)):
+    time_max_s = STANDSTILL_MAX_S + length_m / SLOWEST_MPS
+    for k in range(ceil(time_max_s / step_s)):
         for slave in slaves.values():
             slave.read()
-        if position.value >= course.length_m:
+        if position.value >= length_m:
             return rows, ARRIVED
         moved = k if speed.value > STANDSTILL_MPS else moved
-        if (k - moved) * course.step_s > STANDSTILL_MAX_S:
+        if (k - moved) * step_s > STANDSTILL_MAX_S:
             return rows, f"stood still for {STANDSTILL_MAX_S:g} s at {position.value:.0f} m"
-        rows.append([place.buffer[place.at] for place in seen])
+        rows.append([element.buffer[element.at] for element in seen])
         if k % _PROGRESS_STEPS == 0:
-            course.progress(position.value)
+            progress(position.value)
         _exchange(links)
         for slave in slaves.values():
             slave.write()
-            slave.step(k * course.step_s, course.step_s)
+            slave.step(k * step_s, step_s)
     return rows, f"only at {position.value:.0f} m after {time_max_s:.0f} s"
 
 

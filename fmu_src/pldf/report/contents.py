@@ -20,9 +20,8 @@ from ..kernel.signals import signals_of
 from ..profiles.stored_profile import Iteration, StoredProfile
 from ..recordings.recording import Recording
 from ..recordings.steps import Steps, explain_steps
-from ..roads import Route, fingerprint, route_arrays
+from ..roads import Route, fingerprint, open_route, route_arrays
 from ..route_facts import RouteFacts, route_facts
-from ..study.phases import choose_route
 
 STUDY: Final = "study.toml"
 VERSIONS: Final = "versions.json"
@@ -121,7 +120,7 @@ def _route_of(source: StudyFolder) -> Route:
     name = str(source.study.get("road", {}).get("route", "study"))
     if name != "study" and not name.isdigit():
         raise ModelError(f"{source.folder}: driven on {name}; name the route with --route")
-    return choose_route(name)[0]
+    return open_route(name)
 
 
 def _function(values: Mapping[str, float]) -> DrivingFunction:

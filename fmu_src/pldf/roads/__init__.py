@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from .csv_file import write_route_csv
-from .load import chosen_route, open_route, packed_route, read_route
+from .load import Road, chosen_route, open_road, open_route, packed_route, read_route
 from .route import Route, fingerprint, route_arrays
 
 __all__ = [
+    "Road",
     "Route",
     "chosen_route",
     "fingerprint",
+    "open_road",
     "open_route",
     "packed_route",
     "read_route",

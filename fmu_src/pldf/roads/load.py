@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -48,6 +49,42 @@ def read_route(
     return parse_route_csv(text, path)
 
 
+@dataclass(frozen=True, eq=False)
+class Road:
+    """A route and where it came from, so that others can find it again.
+
+    Attributes:
+        route: the route.
+        route_id: its number among the packed routes; None: it comes from ``file``.
+        file: the file, as the person named it; a packed one's own file.
+        as_it_is: number or file alone give this route, without start road and default limit.
+    """
+
+    route: Route
+    route_id: int | None
+    file: Path
+    as_it_is: bool
+
+
+def open_road(
+    name: str, *, start_road: str | None = None, default_limit_mps: float | None = None
+) -> Road:
+    """Return the road that a person named: a file, else ``study`` or the number of a packed route.
+
+    Args:
+        name: as above.
+        start_road: id of the OpenDRIVE road to start with; default: the only possible one.
+        default_limit_mps: limit for OpenDRIVE roads that state none.
+
+    Raises:
+        ModelError: as ``read_route``, or there is no packed route with this number.
+    """
+    route_id = None if Path(name).exists() else _packed_id(name)
+    file = Path(name) if route_id is None else _packed_file(route_id)
+    route = read_route(file, start_road=start_road, default_limit_mps=default_limit_mps)
+    return Road(route, route_id, file, start_road is None and default_limit_mps is None)
+
+
 def open_route(
     name: str, *, start_road: str | None = None, default_limit_mps: float | None = None
 ) -> Route:
@@ -55,15 +92,13 @@ def open_route(
 
     Args:
         name: a file, ``study`` for the shipped road, or the number of a packed route.
-        start_road: as for ``read_route``.
-        default_limit_mps: as for ``read_route``.
+        start_road: as for ``open_road``.
+        default_limit_mps: as for ``open_road``.
 
     Raises:
-        ModelError: as ``read_route`` and ``packed_route``.
+        ModelError: as ``open_road``.
     """
-    if not Path(name).exists() and (name == "study" or name.isdigit()):
-        return packed_route(STUDY_ROAD_ID if name == "study" else int(name))
-    return read_route(name, start_road=start_road, default_limit_mps=default_limit_mps)
+    return open_road(name, start_road=start_road, default_limit_mps=default_limit_mps).route
 
 
 def packed_route(route_id: int) -> Route:
@@ -72,10 +107,20 @@ def packed_route(route_id: int) -> Route:
     Raises:
         ModelError: for an unknown index; lists the known ones.
     """
+    return read_route(_packed_file(route_id))
+
+
+def _packed_id(name: str) -> int | None:
+    if name == "study":
+        return STUDY_ROAD_ID
+    return int(name) if name.isdecimal() and name.isascii() else None
+
+
+def _packed_file(route_id: int) -> Path:
     if not 0 <= route_id < len(PACKED):
         known = ", ".join(f"{i} = {Path(name).stem}" for i, name in enumerate(PACKED))
         raise ModelError(f"route_id {route_id} is unknown; packed routes: {known}")
-    return read_route(DATA / PACKED[route_id])
+    return DATA / PACKED[route_id]
 
 
 def chosen_route(route_id: int, route_file: str) -> Route:

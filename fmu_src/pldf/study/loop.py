@@ -32,7 +32,7 @@ class Models(NamedTuple):
     pldf: PldfState
 
 
-class World(NamedTuple):
+class ModelArrays(NamedTuple):
     """What the three models know and remember beside their records."""
 
     wish: WishArrays
@@ -68,17 +68,17 @@ class Rows(NamedTuple):
     limit_mps: Floats
 
 
-def run_drive(models: Models, world: World, ends: Ends, rows: Rows) -> tuple[int, int]:
+def run_drive(models: Models, arrays: ModelArrays, ends: Ends, rows: Rows) -> tuple[int, int]:
     """Drive until the end; return how it ended (code) and the number of steps made.
 
     Inputs start at 0 where no output is known yet: the vehicle is first, the function last.
     """
     vehicle, driver, pldf = models
-    vehicle_start(vehicle, world.route.grade)
+    vehicle_start(vehicle, arrays.route.grade)
     _show_vehicle_to_driver(vehicle, driver)
     driver_start(driver)
     _show_to_function(vehicle, driver, pldf)
-    refresh(pldf, world.route, world.profile)
+    refresh(pldf, arrays.route, arrays.profile)
     moved = 0  # last step at which the vehicle moved
     for k in range(ends.steps):
         if vehicle.s_m >= ends.length_m:
@@ -90,9 +90,9 @@ def run_drive(models: Models, world: World, ends: Ends, rows: Rows) -> tuple[int
         if k < len(rows.s_m):
             _write_row(models, rows, k)
         _exchange(vehicle, driver, pldf)
-        vehicle_step(vehicle, world.route.grade, ends.step_s)
-        driver_step(driver, world.wish, world.script, ends.step_s)
-        drive_step(pldf, world.route, world.profile, world.trace, ends.step_s)
+        vehicle_step(vehicle, arrays.route.grade, ends.step_s)
+        driver_step(driver, arrays.wish, arrays.script, ends.step_s)
+        drive_step(pldf, arrays.route, arrays.profile, arrays.trace, ends.step_s)
     return TOO_SLOW, ends.steps
 
 

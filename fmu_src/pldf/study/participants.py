@@ -8,23 +8,21 @@ from typing import Final
 
 from vehicle_models.driver_state import DriverState
 
-from ..cosim.fmu import Value
+from ..cosim.fmu import FmuMessage, Value
 from ..cosim.master import STEP_S
 from ..kernel.signals import Signal, signals_of
 from ..profiles.store import Iteration
 from ..recordings.recording import Recording
-from ..roads import Route
+from ..roads import Road, Route
 from .drive_row import DriveRow
 from .phases import Phase
 
-SEED_MAX: Final = 999_999_999
 _OF_THE_DRIVE: Final = ("kind", "script_id", "route_id", "seed")
 # The parameters of the driver model that make one driver differ from another, by field.
 DRIVER_SIGNALS: Final[dict[str, Signal]] = {
     signal.field: signal
     for signal in signals_of(DriverState)
-    if signal.causality == "parameter"
-    and signal.name not in ("kind", "script_id", "route_id", "seed")
+    if signal.causality == "parameter" and signal.name not in _OF_THE_DRIVE
 }
 
 
@@ -34,7 +32,7 @@ class Participant:
 
     Attributes:
         id: P and the number in the study: P001.
-        seed: of the driver's small irregularities in the first drive; each drive takes the next.
+        seed: of the driver's small irregularities in the first drive; see ``seed_of_drive``.
         values: parameters by field of ``DriverState``; those absent keep their defaults.
     """
 
@@ -59,8 +57,7 @@ class StudySettings:
     """What is the same for all participants.
 
     Attributes:
-        route: the route of every drive.
-        road: the parameters that make the FMUs use this route.
+        road: where everybody drives.
         phases: in the order of driving; one name may occur more than once.
         counterbalanced: every second participant drives B before A.
         function: parameters of the driving function that differ from their defaults, by FMI name.
@@ -69,14 +66,18 @@ class StudySettings:
         recorded: ids of the participants whose recordings and profiles are kept.
     """
 
-    route: Route
-    road: Mapping[str, Value]
+    road: Road
     phases: tuple[Phase, ...]
     counterbalanced: bool = False
     function: Mapping[str, Value] = field(default_factory=dict)
     vehicle: Mapping[str, Value] = field(default_factory=dict)
     step_s: float = STEP_S
     recorded: frozenset[str] = frozenset()
+
+    @property
+    def route(self) -> Route:
+        """The route of every drive."""
+        return self.road.route
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,11 +88,13 @@ class DriveResult:
         row: the numbers of the drive.
         recording: one row per step, if it is kept.
         iteration: what the drive taught; None if the phase does not learn.
+        warnings: of the FMUs, if they drove.
     """
 
     row: DriveRow
     recording: Recording | None = None
     iteration: Iteration | None = None
+    warnings: tuple[FmuMessage, ...] = ()
 
 
 def order_of(settings: StudySettings, participant: Participant) -> tuple[Phase, ...]:
@@ -106,8 +109,3 @@ def order_of(settings: StudySettings, participant: Participant) -> tuple[Phase, 
     adaptive = [p for p in settings.phases if p.apply_learned]
     rest = [p for p in settings.phases if not p.apply_learned and not p.learn]
     return (*learned, *adaptive, *rest)
-
-
-def seed_of(participant: Participant, drive: int) -> int:
-    """Return the driver's seed for the drive with this number, from 0, within the FMU's range."""
-    return (participant.seed + drive) % (SEED_MAX + 1)

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Final
 
 from ..instance import ModelError
-from .participants import DRIVER_SIGNALS, SEED_MAX, Participant
+from .participants import DRIVER_SIGNALS, Participant
+from .phases import SEED_MAX
 
 _FIELDS: Final = {signal.name: field for field, signal in DRIVER_SIGNALS.items()}
 _ID: Final = re.compile(r"P\d{1,9}")

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, NamedTuple
 
 from ..cosim.fmu import Value
-from ..cosim.master import STEP_S, Course, Progress, Values
+from ..cosim.master import Values
 from ..kernel.codes import LEARN_FAITHFUL, LEARN_OFF
-from ..roads import Route, open_route, packed_route
+from ..roads import Route
 from ..route_facts import route_facts
 
+# Seeds of the driver model end here.
+SEED_MAX: Final = 999_999_999
 # Kinds of ``ScriptedDriver``.
 HANDS_OFF: Final = 0
 SCRIPT: Final = 1
@@ -50,51 +53,42 @@ PHASES: Final = {
 }
 
 
+def seed_of_drive(first: int, drive: int) -> int:
+    """Return the driver's seed for the drive with this number, from 0.
+
+    Each drive takes the next seed after ``first``, the driver's own; behind the last comes 0.
+    """
+    return (first + drive) % (SEED_MAX + 1)
+
+
 @dataclass(frozen=True)
-class Setting:
-    """What stays the same from drive to drive.
+class DriveSetting:
+    """What one drive of the FMUs needs beside its phase.
 
     Attributes:
         route: the route, for all three FMUs.
         road: the parameters that make the FMUs use this route.
         driver_id: whose profile.
-        seed: of the driver's small irregularities in the first drive; each drive takes the next.
+        seed: of the driver's small irregularities.
         store: folder of profiles; None: the environment decides.
-        step_s: communication step.
         more: further values by part; they win.
     """
 
     route: Route
-    road: dict[str, Value]
+    road: Mapping[str, Value]
     driver_id: int = 1
     seed: int = 1
     store: Path | None = None
-    step_s: float = STEP_S
     more: Values = field(default_factory=dict)
 
-    def course(self, progress: Progress) -> Course:
-        """Return the whole route; the function knows it to the last whole metre."""
-        return Course(self.route.nodes - 1.0, self.step_s, progress)
+    @property
+    def length_m(self) -> float:
+        """How far is driven; the function knows the route to the last whole metre."""
+        return self.route.nodes - 1.0
 
 
-def choose_route(name: str) -> tuple[Route, dict[str, Value]]:
-    """Return the route that a person named, and the parameters that tell the FMUs.
-
-    Args:
-        name: a route file, ``study``, or the number of a packed route.
-
-    Raises:
-        ModelError: there is no such route or it cannot be used.
-    """
-    if name.isdigit() and not Path(name).exists():
-        return packed_route(int(name)), {"route_id": int(name)}
-    if name == "study" and not Path(name).exists():
-        return packed_route(0), {"route_id": 0}
-    return open_route(name), {"route_file": str(Path(name).resolve())}
-
-
-def values_of(phase: Phase, setting: Setting, drive: int = 0) -> Values:
-    """Return what to set in the FMUs for ``phase``, the drive with this number, from 0.
+def values_of(phase: Phase, setting: DriveSetting) -> dict[str, dict[str, Value]]:
+    """Return what to set in the FMUs for ``phase``, by part and name.
 
     The car starts at the speed that the base profile has at its start.
     """
@@ -115,7 +109,7 @@ def values_of(phase: Phase, setting: Setting, drive: int = 0) -> Values:
         "driver": {
             **setting.road,
             "kind": PREFERENCE if phase.intervenes else HANDS_OFF,
-            "seed": setting.seed + drive,
+            "seed": setting.seed,
         },
     }
     return {part: {**chosen[part], **setting.more.get(part, {})} for part in chosen}

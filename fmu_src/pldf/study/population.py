@@ -25,8 +25,8 @@ from ..kernel.units import MPS_PER_KMH
 from .participants import Participant
 
 STANDARD: Final = NormalDist()
-# Each drive takes the next seed; the driver model's seeds end at 999,999,999.
-SEED_MAX: Final = 999_900_000
+# Each drive takes the next seed: room for many drives below the driver model's last one.
+OWN_SEED_MAX: Final = 999_900_000
 
 
 class Law(Protocol):
@@ -154,16 +154,17 @@ def read_distribution(table: Mapping[str, Any]) -> Distribution:
 
 
 def sample_participants(
-    count: int, seed: int, distribution: Distribution | None = None
+    count: int, seed: int, distribution: Distribution | None = None, first: int = 1
 ) -> list[Participant]:
-    """Return ``count`` people, P001 first; the same ``seed`` gives the same people."""
-    return [draw_participant(k, seed, distribution or Distribution()) for k in range(count)]
+    """Return ``count`` people from number ``first`` on; the same ``seed`` gives the same people."""
+    laws = distribution or Distribution()
+    return [draw_participant(first - 1 + k, seed, laws) for k in range(count)]
 
 
 def draw_participant(index: int, seed: int, distribution: Distribution) -> Participant:
     """Return the person with this index, from 0, whatever the size of the study."""
     rng = np.random.default_rng([seed, index])
-    own_seed = int(rng.integers(1, SEED_MAX, endpoint=True))
+    own_seed = int(rng.integers(1, OWN_SEED_MAX, endpoint=True))
     # The open interval: a normal law has no value at 0.
     quantiles = [max(float(rng.random()), 1e-12) for _ in FIELDS]
     return Participant(f"P{index + 1:03d}", own_seed, values_at(quantiles, distribution))

@@ -16,48 +16,56 @@ from multiprocessing import get_context
 from typing import Any, Final
 
 from ..instance import ModelError
+from .folder import StudyFolder
 from .participants import Participant
-from .results import Results
 from .simulation import compile_all
-from .unit import Done, Job, do_unit
+from .through_fmus import Watch
+from .unit import Job, ParticipantResult, do_unit
 
 # Participants handed to each process ahead of time.
 _AHEAD: Final = 3
 # How long a scheduler may take to answer.
 _ANSWER_S: Final = 10
 
-Driven = Generator[Done, None, None]
-Run = Callable[[Job, list[Participant]], Driven]
+# A way to run units; what came out is given as it comes, in any order.
+ResultStream = Generator[ParticipantResult, None, None]
+Run = Callable[[Job, list[Participant]], ResultStream]
 
 
-def run_missing(results: Results, job: Job, run: Run, progress: Callable[[Done], None]) -> None:
+def run_missing(
+    folder: StudyFolder, job: Job, run: Run, progress: Callable[[ParticipantResult], None]
+) -> None:
     """Drive the participants without results and merge all results.
 
     Raises:
         ModelError: a drive failed; what is done is kept.
     """
-    missing = results.missing()
+    missing = folder.missing()
     if missing:
-        with closing(run(job, missing)) as driven:
-            for done in driven:
-                results.keep(done)
-                progress(done)
-    results.merge()
+        with closing(run(job, missing)) as results:
+            for result in results:
+                folder.keep(result)
+                progress(result)
+    folder.merge()
 
 
-def in_processes(jobs: int) -> Run:
-    """Return a way to run units in ``jobs`` processes (1: this one)."""
+def in_processes(jobs: int, watch: Watch = lambda _: None) -> Run:
+    """Return a way to run units in ``jobs`` processes.
 
-    def run(job: Job, participants: list[Participant]) -> Driven:
+    A single participant, or all if ``jobs`` is 1, are driven in this process; ``watch`` is told
+    how far each of them has come.
+    """
+
+    def run(job: Job, participants: list[Participant]) -> ResultStream:
         count = min(jobs, len(participants))
         if count == 1:
-            return (do_unit(job, one) for one in participants)
+            return (do_unit(job, participant, watch) for participant in participants)
         return _in_pool(job, participants, count)
 
     return run
 
 
-def _in_pool(job: Job, participants: list[Participant], count: int) -> Driven:
+def _in_pool(job: Job, participants: list[Participant], count: int) -> ResultStream:
     compile_all(job.settings)  # once, for all processes to load
     pool = ProcessPoolExecutor(
         count, mp_context=get_context("spawn"), initializer=_begin, initargs=(job,)
@@ -89,7 +97,7 @@ def _begin(job: Job) -> None:
     _job = job
 
 
-def _unit(participant: Participant) -> Done:
+def _unit(participant: Participant) -> ParticipantResult:
     assert _job is not None
     return do_unit(_job, participant)
 
@@ -109,7 +117,7 @@ def on_cluster(address: str) -> Run:
             "--scheduler needs dask.distributed: pip install 'adaptive-pldf[cluster]'"
         ) from None
 
-    def run(job: Job, participants: list[Participant]) -> Driven:
+    def run(job: Job, participants: list[Participant]) -> ResultStream:
         try:
             client = distributed.Client(address, timeout=_ANSWER_S)
         except (OSError, ValueError) as error:

@@ -36,9 +36,9 @@ from ..roads import fingerprint, route_arrays
 from ..route_facts import route_facts
 from . import loop
 from .drive_row import DriveRow
-from .loop import ARRIVED, STOOD_STILL, Ends, Models, Rows, World
-from .participants import DriveResult, Participant, StudySettings, order_of, seed_of
-from .phases import HANDS_OFF, PHASES, PREFERENCE, Phase
+from .loop import ARRIVED, STOOD_STILL, Ends, ModelArrays, Models, Rows
+from .participants import DriveResult, Participant, StudySettings, order_of
+from .phases import HANDS_OFF, PHASES, PREFERENCE, Phase, seed_of_drive
 
 Packed = NDArray[np.void]
 
@@ -139,7 +139,7 @@ class Simulation:
     def _drive(
         self, person: Person, phase: Phase, number: int, stored: StoredProfile
     ) -> DriveResult:
-        world = World(
+        arrays = ModelArrays(
             wish=person.wish,
             script=zeros(ScriptArrays, 0),
             route=self.route,
@@ -152,18 +152,16 @@ class Simulation:
         kept = person.participant.id in self.settings.recorded
         rows = zeros(Rows, ends.steps if kept else 0)
         models = Models(*cast(Any, (vehicle[0], driver[0], pldf[0])))
-        ending, steps = self.code["run_drive"](models, world, ends, rows)
+        ending, steps = self.code["run_drive"](models, arrays, ends, rows)
         if ending != ARRIVED:
             where = f"participant {person.participant.id}, drive {phase.name}"
             raise ModelError(f"{where} was given up: {_why(ending, float(vehicle['s_m'][0]))}")
         st = PldfState()
         unpack(pldf, st)
         return DriveResult(
-            row=row_of(
-                person, phase, number + 1, Outcome((steps - 1) * ends.step_s, st, world.profile)
-            ),
+            row=row_of(person, phase, number + 1, (steps - 1) * ends.step_s, st, arrays.profile),
             recording=_recording(rows, steps, ends.step_s) if kept else None,
-            iteration=self._learn(pldf, world, stored) if phase.learn else None,
+            iteration=self._learn(pldf, arrays, stored) if phase.learn else None,
         )
 
     def _packed_function(self, phase: Phase, stored: StoredProfile) -> Packed:
@@ -175,10 +173,10 @@ class Simulation:
         st["profile_iteration"] = len(stored.iterations)
         return st
 
-    def _learn(self, st: Packed, world: World, stored: StoredProfile) -> Iteration:
+    def _learn(self, st: Packed, arrays: ModelArrays, stored: StoredProfile) -> Iteration:
         following = zeros(NextArrays, self.nodes)
         work = zeros(Work, self.nodes)
-        self.code["learn_drive"](st[0], self.route, world.profile, world.trace, work, following)
+        self.code["learn_drive"](st[0], self.route, arrays.profile, arrays.trace, work, following)
         record = PldfState()
         unpack(st, record)
         return next_iteration(record, following, stored)
@@ -195,30 +193,29 @@ class Person(NamedTuple):
         """Return the driver's record for the drive with this number, from 0."""
         st = pack(self.model.record)
         st["kind"] = PREFERENCE if phase.intervenes else HANDS_OFF
-        st["seed"] = seed_of(self.participant, number)
+        st["seed"] = seed_of_drive(self.participant.seed, number)
         return st
 
 
-class Outcome(NamedTuple):
-    """What a drive's row is made of: its time, the function's outputs, the profile followed."""
-
-    duration_s: float
-    outputs: PldfState
-    profile: ProfileArrays
-
-
-def row_of(person: Person, phase: Phase, position: int, outcome: Outcome) -> DriveRow:
-    """Return the row of one drive."""
-    missed = np.asarray(outcome.profile.learned_mps) - np.asarray(person.wish.wish_mps)
+def row_of(
+    person: Person,
+    phase: Phase,
+    position: int,
+    duration_s: float,
+    outputs: PldfState,
+    followed: ProfileArrays,
+) -> DriveRow:
+    """Return the row of the drive at ``position``, from 1, with the function's last outputs."""
+    missed = np.asarray(followed.learned_mps) - np.asarray(person.wish.wish_mps)
     return DriveRow(
         participant=person.participant.id,
         phase=phase.name,
         position=position,
-        duration_s=outcome.duration_s,
-        pedal_rate=outcome.outputs.rate_pedal,
-        set_speed_rate=outcome.outputs.rate_set_speed,
-        combined_rate=outcome.outputs.rate_combined,
-        interventions=outcome.outputs.drive_interventions,
+        duration_s=duration_s,
+        pedal_rate=outputs.rate_pedal,
+        set_speed_rate=outputs.rate_set_speed,
+        combined_rate=outputs.rate_combined,
+        interventions=outputs.drive_interventions,
         wish_error_mps=float(np.sqrt(np.mean(missed * missed))),
     )
 

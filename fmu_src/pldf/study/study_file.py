@@ -2,31 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from vehicle_models.vehicle_state import VehicleState
 
-from ..cosim.fmu import Value
-from ..cosim.master import STEP_S
 from ..instance import ModelError
 from ..kernel.signals import Signal, signals_of
 from ..kernel.state import PldfState
-from ..roads import Route
-from .participants import SEED_MAX, Participant, StudySettings
+from ..roads import Road, open_road
+from ..settings import parameter_value
+from .participants import DRIVER_SIGNALS, Participant, StudySettings
 from .participants_file import read_participants
-from .phases import PHASES, Phase, choose_route
+from .phases import PHASES, Phase
 from .population import Distribution, read_distribution, sample_participants
-from .study_text import StudyText
+from .study_tables import StudyTables, parameter_table
+from .toml_file import Key, TomlFile, listed, shown
 
+# The packaged study of one driver through the FMUs.
+ONE_DRIVER: Final = "one_driver"
 # Studies that come with the package, by name.
 PACKAGED: Final = Path(__file__).parent / "studies"
-COUNT_MAX: Final = 1_000_000
-PER_PHASE_MAX: Final = 1000
-ORDERS: Final = ("fixed", "counterbalanced")
-STEP_MIN_S: Final = 1e-4
-STEP_MAX_S: Final = 0.1
 # Parameters that follow from the study file's other keys.
 _NOT_TO_SET: Final = (
     "apply_learned", "driver_id", "learn", "learn_faithful", "localization", "main_switch",
@@ -42,13 +41,15 @@ class Study:
         title: for people.
         settings: what is the same for all participants.
         participants: in the order of their numbers.
+        through: what drives, unless the command says otherwise: "kernels" or "fmus".
         out: where the results go.
-        source: the file's content.
+        source: the file's content, with the changes asked for.
     """
 
     title: str
     settings: StudySettings
     participants: tuple[Participant, ...]
+    through: str
     out: Path
     source: str
 
@@ -68,44 +69,62 @@ def study_path(name: str) -> Path:
     raise ModelError(f"{name}: no such study file; packaged are {known}")
 
 
-def read_study(path: Path) -> Study:
+def changes_of(settings: Mapping[str, str]) -> dict[Key, Any]:
+    """Return parameters that a person named, as changes of a study file.
+
+    Args:
+        settings: text by FMI name, with ``pldf.``, ``vehicle.`` or ``driver.`` before it where
+            more than one of the three has it.
+
+    Raises:
+        ModelError: there is no such parameter in a study file, or it cannot have this value.
+    """
+    places: dict[str, list[Key]] = {}
+    for table, part in _PARTS.items():
+        for name in SETTABLE[table]:
+            places.setdefault(name, []).append((table, name))
+            places.setdefault(f"{part}.{name}", []).append((table, name))
+    changes = {}
+    for given, text in settings.items():
+        if given not in places:
+            near = ", ".join(get_close_matches(given, places, n=3, cutoff=0.5)) or "learning.weight"
+            raise ModelError(f"--set {given}: not in a study file; did you mean {near}?")
+        if len(places[given]) > 1:
+            both = " or ".join(f"{_PARTS[table]}.{name}" for table, name in places[given])
+            raise ModelError(f"--set {given}: more than one FMU has it, write {both}")
+        (key,) = places[given]
+        changes[key] = _uncoded(SETTABLE[key[0]][key[1]], text)
+    return changes
+
+
+def read_study(path: Path, changes: Mapping[Key, Any] | None = None) -> Study:
     """Read a study file.
+
+    Args:
+        path: the file.
+        changes: values that count in place of the file's, by (table, key).
 
     Raises:
         ModelError: naming file, line, key and the allowed values.
     """
-    file = StudyText(path)
-    function, vehicle = _settable(PldfState), _settable(VehicleState)
-    file.check_keys(
-        {
-            "": ("title", "output"),
-            "participants": ("count", "seed", "file"),
-            "drives": ("phases", "order", "per_phase", "step_s"),
-            "road": ("route",),
-            "function": function,
-            "vehicle": vehicle,
-            "distribution": tuple(Distribution().as_table()),
-            "recordings": ("participants",),
-        }
-    )
-    people = _participants(file)
-    everybody = [one.id for one in people]
-    route, road = _route(file)
+    file = TomlFile(path, changes)
+    tables = file.read(StudyTables)
+    people = _participants(file, tables)
     settings = StudySettings(
-        route=route,
-        road=road,
-        phases=_phases(file),
-        counterbalanced=file.choice(("drives", "order"), ORDERS) == "counterbalanced",
-        function=_parameters(file, "function", function),
-        vehicle=_parameters(file, "vehicle", vehicle),
-        step_s=file.number(("drives", "step_s"), STEP_MIN_S, STEP_MAX_S, STEP_S),
-        recorded=frozenset(file.list_of(("recordings", "participants"), everybody, ())),
+        road=_road(file, tables),
+        phases=_phases(file, tables),
+        counterbalanced=tables.drives.order == "counterbalanced",
+        function=_parameters(file, "function", SETTABLE["function"]),
+        vehicle=_parameters(file, "vehicle", SETTABLE["vehicle"]),
+        step_s=tables.drives.step_s,
+        recorded=_recorded(file, tables, [person.id for person in people]),
     )
     return Study(
-        title=file.words(("title",), path.stem),
+        title=tables.title or path.stem,
         settings=settings,
         participants=people,
-        out=Path(file.words(("output",), f"out/{path.stem}")),
+        through=tables.drives.through,
+        out=Path(tables.output or f"out/{path.stem}"),
         source=file.text,
     )
 
@@ -118,27 +137,60 @@ def _settable(record: type[PldfState] | type[VehicleState]) -> dict[str, Signal]
     }
 
 
-def _parameters(file: StudyText, table: str, known: dict[str, Signal]) -> dict[str, Value]:
-    given = file.value((table,)) or {}
-    return {name: file.parameter((table, name), known[name]) for name in given}
+# The tables of parameters, and what the coupled models are called.
+_PARTS: Final = {"function": "pldf", "vehicle": "vehicle", "driver": "driver"}
+# The tables of parameters: what may be set there, by FMI name.
+SETTABLE: Final[Mapping[str, Mapping[str, Signal]]] = {
+    "function": _settable(PldfState),
+    "vehicle": _settable(VehicleState),
+    "driver": {signal.name: signal for signal in DRIVER_SIGNALS.values()},
+}
 
 
-def _route(file: StudyText) -> tuple[Route, dict[str, Value]]:
-    key = ("road", "route")
-    name = file.words(key, "study")
-    beside = file.path.parent / name
+def _parameters(file: TomlFile, table: str, known: Mapping[str, Signal]) -> dict[str, float | int]:
+    """Return a table of parameters; enumerations and Booleans as numbers."""
+    read = file.read(parameter_table(known.values()), table)
+    return {
+        name: _coded(known[name], getattr(read, known[name].field))
+        for name in file.table.get(table, {})
+    }
+
+
+def _uncoded(signal: Signal, text: str) -> Any:
+    """Return what a study file says for a value that was given as text."""
+    value = parameter_value(signal, text)
+    if signal.enumeration is not None and 0 <= value < len(signal.enumeration.items):
+        return signal.enumeration.items[int(value)]
+    return bool(value) if signal.kind == "Boolean" else value
+
+
+def _coded(signal: Signal, value: Any) -> float | int:
+    if signal.enumeration is not None:
+        return signal.enumeration.items.index(value)
+    return float(value) if signal.kind == "Real" else int(value)
+
+
+def _road(file: TomlFile, tables: StudyTables) -> Road:
+    road = tables.road
+    beside = file.path.parent / road.route
     try:
-        return choose_route(str(beside) if beside.is_file() else name)
+        return open_road(
+            str(beside) if beside.is_file() else road.route,
+            start_road=road.start_road,
+            default_limit_mps=road.default_limit_mps,
+        )
     except ModelError as problem:
-        file.fail(key, str(problem))
+        file.fail(("road", "route"), str(problem))
 
 
-def _phases(file: StudyText) -> tuple[Phase, ...]:
+def _phases(file: TomlFile, tables: StudyTables) -> tuple[Phase, ...]:
     """Return the phases in order; driven more than once, they are numbered on per system."""
-    names = file.list_of(("drives", "phases"), PHASES, tuple(PHASES))
+    names, repeats = tables.drives.phases, tables.drives.per_phase
+    key = ("drives", "phases")
     if not names:
-        file.fail(("drives", "phases"), f"empty; choose out of {', '.join(PHASES)}")
-    repeats = file.whole(("drives", "per_phase"), 1, PER_PHASE_MAX, 1)
+        file.fail(key, f"empty; choose out of {', '.join(PHASES)}")
+    if len(set(names)) < len(names):
+        file.fail(key, "an item occurs twice")
     phases = [PHASES[name] for name in names for _ in range(repeats)]
     if repeats == 1:
         return tuple(phases)
@@ -151,22 +203,47 @@ def _phases(file: StudyText) -> tuple[Phase, ...]:
     return tuple(numbered)
 
 
-def _participants(file: StudyText) -> tuple[Participant, ...]:
-    table = file.value(("participants",)) or {}
-    if "file" in table:
-        for key in ("count", "seed"):
-            if key in table:
-                file.fail(("participants", key), "not together with file, which says it all")
-        if "distribution" in file.table:
-            file.fail(("distribution",), "not together with a file of participants")
-        return read_participants(file.path.parent / file.words(("participants", "file"), ""))
-    count = file.whole(("participants", "count"), 1, COUNT_MAX, 43)
-    seed = file.whole(("participants", "seed"), 0, SEED_MAX, 1)
-    return tuple(sample_participants(count, seed, _distribution(file)))
+def _recorded(file: TomlFile, tables: StudyTables, known: list[str]) -> frozenset[str]:
+    names = tables.recordings.participants
+    if names == "all":
+        return frozenset(known)
+    everybody = set(known)
+    for name in names:
+        if name not in everybody:
+            file.fail(
+                ("recordings", "participants"), f"{shown(name)} must be one of {listed(known)}"
+            )
+    return frozenset(names)
 
 
-def _distribution(file: StudyText) -> Distribution:
-    table = file.value(("distribution",)) or {}
+def _participants(file: TomlFile, tables: StudyTables) -> tuple[Participant, ...]:
+    """Return those of a file, the one driver who is described, or people who are drawn."""
+    table, given = tables.participants, file.table.get("participants", {})
+    if table.file:
+        _refuse(file, ("count", "seed", "first"), ("driver", "distribution"), "participants.file")
+        return read_participants(file.path.parent / table.file)
+    if tables.driver is not None:
+        _refuse(file, (), ("distribution",), "a driver who is described")
+        if given.get("count", 1) != 1:
+            file.fail(("participants", "count"), "[driver] describes one driver: write count = 1")
+        values = _parameters(file, "driver", SETTABLE["driver"])
+        fields = {SETTABLE["driver"][name].field: float(value) for name, value in values.items()}
+        return (Participant(f"P{table.first:03d}", table.seed, fields),)
+    return tuple(sample_participants(table.count, table.seed, _distribution(file), table.first))
+
+
+def _refuse(file: TomlFile, keys: tuple[str, ...], tables: tuple[str, ...], beside: str) -> None:
+    """Fail if one of these is given, since ``beside`` says it all."""
+    for key in keys:
+        if key in file.table["participants"]:
+            file.fail(("participants", key), f"not together with {beside}, which says it all")
+    for table in tables:
+        if table in file.table:
+            file.fail((table,), f"not together with {beside}")
+
+
+def _distribution(file: TomlFile) -> Distribution:
+    table = file.table.get("distribution", {})
     for name, law in table.items():
         try:
             read_distribution({name: law})

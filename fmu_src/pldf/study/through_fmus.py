@@ -2,93 +2,108 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from ..cosim.fmu import Fmu, Value
+from ..cosim.fmu import Fmu
 from ..cosim.master import Drive, drive
+from ..cosim.road_values import road_values
 from ..instance import ModelError
 from ..kernel.state import PldfState
 from ..profiles.store import ProfileStore
-from .participants import (
-    DRIVER_SIGNALS,
-    DriveResult,
-    Participant,
-    StudySettings,
-    order_of,
-    seed_of,
-)
-from .phases import Phase, Setting, values_of
-from .simulation import Outcome, Person, Simulation, prepared, row_of
+from ..profiles.stored_profile import StoredProfile
+from .participants import DRIVER_SIGNALS, DriveResult, Participant, StudySettings, order_of
+from .phases import DriveSetting, Phase, seed_of_drive, values_of
+from .simulation import prepared, row_of
+
+# Called now and then with the number of this participant's drives that are done, 2.5 for example.
+Watch = Callable[[float], None]
 
 
 def drive_participant(
-    fmus: Mapping[str, Fmu], settings: StudySettings, participant: Participant
+    fmus: Mapping[str, Fmu], settings: StudySettings, participant: Participant, watch: Watch
 ) -> tuple[DriveResult, ...]:
     """Drive all phases with ``participant``; see ``simulation.simulate_participant``."""
-    simulation = prepared(settings)
-    person = simulation.person(participant)
     # Where the FMUs were unpacked: it goes with them, even if this process is killed.
     place = fmus["pldf"].folder.parent
     with TemporaryDirectory(dir=place, ignore_cleanup_errors=True) as folder:
+        driver = _Driver(fmus, settings, participant, Path(folder))
         return tuple(
-            _drive(fmus, simulation, person, (number, phase, Path(folder)))
+            driver.drive(number, phase, watch)
             for number, phase in enumerate(order_of(settings, participant))
         )
 
 
-def _drive(
-    fmus: Mapping[str, Fmu],
-    simulation: Simulation,
-    person: Person,
-    task: tuple[int, Phase, Path],
-) -> DriveResult:
-    number, phase, folder = task
-    settings, participant = simulation.settings, person.participant
-    values: dict[str, Value] = {
-        DRIVER_SIGNALS[name].name: participant.value(name) for name in participant.values
-    }
-    setting = Setting(
-        route=settings.route,
-        road=dict(settings.road),
-        driver_id=participant.number,
-        store=folder,
-        step_s=settings.step_s,
-        more={
-            "pldf": settings.function,
-            "vehicle": settings.vehicle,
-            "driver": {**values, "seed": seed_of(participant, number)},
-        },
-    )
-    store = ProfileStore(folder)
-    blank = simulation.stored_for(participant)
-    key = (blank.driver_id, blank.route, blank.nodes)
-    before = store.load(*key) or blank
-    profile = simulation.followed(before, phase)
-    driven = drive(fmus, values_of(phase, setting, number), setting.course(lambda _: None))
-    _require_good(f"participant {participant.id}, drive {phase.name}", driven)
-    after = store.load(*key) or blank
-    duration_s = float(driven.recording["time_s"][-1])
-    return DriveResult(
-        row=row_of(person, phase, number + 1, Outcome(duration_s, _outputs(driven), profile)),
-        recording=driven.recording if participant.id in settings.recorded else None,
-        iteration=after.iterations[-1] if phase.learn else None,
-    )
+class _Driver:
+    """One participant with the FMUs and a profile store of their own in ``folder``."""
+
+    def __init__(
+        self,
+        fmus: Mapping[str, Fmu],
+        settings: StudySettings,
+        participant: Participant,
+        folder: Path,
+    ) -> None:
+        self._fmus = fmus
+        self._settings = settings
+        self._simulation = prepared(settings)
+        self._person = self._simulation.person(participant)
+        self._setting = DriveSetting(
+            route=settings.route,
+            road=road_values(settings.road, folder),
+            driver_id=participant.number,
+            store=folder,
+            more={
+                "pldf": settings.function,
+                "vehicle": settings.vehicle,
+                "driver": {
+                    DRIVER_SIGNALS[name].name: participant.value(name)
+                    for name in participant.values
+                },
+            },
+        )
+
+    def drive(self, number: int, phase: Phase, watch: Watch) -> DriveResult:
+        """Drive ``phase`` as the drive with this number, from 0."""
+        participant = self._person.participant
+        setting = replace(self._setting, seed=seed_of_drive(participant.seed, number))
+        followed = self._simulation.followed(self._stored(), phase)
+        done = drive(
+            self._fmus,
+            values_of(phase, setting),
+            setting.length_m,
+            self._settings.step_s,
+            lambda s_m: watch(number + s_m / setting.length_m),
+        )
+        _require_good(f"participant {participant.id}, drive {phase.name}", done)
+        duration_s = float(done.recording["time_s"][-1])
+        return DriveResult(
+            row=row_of(self._person, phase, number + 1, duration_s, _outputs(done), followed),
+            recording=done.recording if participant.id in self._settings.recorded else None,
+            iteration=self._stored().iterations[-1] if phase.learn else None,
+            warnings=tuple(m for m in done.messages if m.level == "warning"),
+        )
+
+    def _stored(self) -> StoredProfile:
+        blank = self._simulation.stored_for(self._person.participant)
+        store = ProfileStore(self._setting.store or "")
+        return store.load(blank.driver_id, blank.route, blank.nodes) or blank
 
 
-def _outputs(driven: Drive) -> PldfState:
+def _outputs(done: Drive) -> PldfState:
     return PldfState(
-        rate_pedal=driven.outputs["rate.pedal"],
-        rate_set_speed=driven.outputs["rate.set_speed"],
-        rate_combined=driven.outputs["rate.combined"],
-        drive_interventions=int(driven.outputs["drive.interventions"]),
+        rate_pedal=done.outputs["rate.pedal"],
+        rate_set_speed=done.outputs["rate.set_speed"],
+        rate_combined=done.outputs["rate.combined"],
+        drive_interventions=int(done.outputs["drive.interventions"]),
     )
 
 
-def _require_good(where: str, driven: Drive) -> None:
-    for said in driven.said:
-        if said.level == "error":
-            raise ModelError(f"{where}: {said.fmu}: {said.text}")
-    if not driven.arrived:
-        raise ModelError(f"{where} was given up: the vehicle {driven.ending}")
+def _require_good(where: str, done: Drive) -> None:
+    for message in done.messages:
+        if message.level == "error":
+            raise ModelError(f"{where}: {message.fmu}: {message.text}")
+    if not done.arrived:
+        raise ModelError(f"{where} was given up: the vehicle {done.ending}")

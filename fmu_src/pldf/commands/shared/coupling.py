@@ -1,4 +1,4 @@
-"""What the commands that drive the coupled FMUs share: arguments, settings, progress, messages."""
+"""The commands that drive the coupled FMUs: which FMUs, for whom, how, and what they say."""
 
 from __future__ import annotations
 
@@ -9,27 +9,22 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeElapsedColumn
-
-from ..build.first_use import fmus_to_drive
-from ..cosim import settable
-from ..cosim.fmu import Fmu, Said
-from ..cosim.master import STEP_S, unpacked
-from ..cosim.settable import Chosen
-from ..cosim.which_fmus import KINDS, NATIVE_FOLDER, USUAL_FOLDER
-from ..instance import ModelError
-from .options import split_settings
+from ...build.first_use import fmus_to_drive
+from ...cosim import settable
+from ...cosim.fmu import Fmu, FmuMessage
+from ...cosim.master import STEP_S, unpacked
+from ...cosim.settable import Chosen
+from ...cosim.which_fmus import KINDS, NATIVE_FOLDER, USUAL_FOLDER
+from ...instance import ModelError
+from .road import Parser, add_road
+from .settings import split_settings
 
 NATIVE_IF_GOOD: Final = "native, if they are there for this platform and up to date"
 
 
-def add_coupling(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments that say which FMUs drive, for whom and how."""
-    parser.add_argument(
-        "--route", default="study",
-        help="route file (.xodr or .csv), or number of a packed route (default: the study road)",
-    )  # fmt: skip
+def add_coupling(parser: Parser) -> None:
+    """Add the arguments that say which FMUs drive, for whom, where and how."""
+    add_road(parser, default="study")
     parser.add_argument(
         "--driver-id", type=_whole, default=1, metavar="N", help="whose profile (default: 1)"
     )
@@ -82,42 +77,16 @@ def chosen_values(fmus: Mapping[str, Fmu], settings: list[str]) -> Chosen:
         raise ModelError(f"--set {problem}") from None
 
 
-def stderr_progress(*columns: ProgressColumn) -> Progress:
-    """Return a progress display of ``columns`` that is silent where nobody watches."""
-    console = Console(file=sys.stderr)
-    return Progress(
-        *columns,
-        console=console,
-        transient=True,
-        disable=not console.is_terminal,
-        redirect_stdout=False,
-        redirect_stderr=False,
-    )
-
-
-@contextmanager
-def progress_bar(total_m: float) -> Iterator[Progress]:
-    """Show a bar on stderr while driving; nothing when stderr is not a terminal."""
-    with stderr_progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.completed:.2f} of {task.total:.2f} km"),
-        TimeElapsedColumn(),
-    ) as bar:
-        bar.add_task("Getting ready", total=total_m / 1000.0)
-        yield bar
-
-
-def tell(said: Iterable[Said]) -> None:
+def print_warnings(messages: Iterable[FmuMessage]) -> None:
     """Print what the FMUs warned of, once, on stderr."""
-    for message in dict.fromkeys(said):
+    for message in dict.fromkeys(messages):
         if message.level == "warning":
             print(f"pldf: {message.fmu}: {message.text}", file=sys.stderr)
 
 
-def require_no_errors(said: Iterable[Said]) -> None:
+def require_no_errors(messages: Iterable[FmuMessage]) -> None:
     """Raise ModelError with the first error that an FMU reported and survived."""
-    for message in said:
+    for message in messages:
         if message.level == "error":
             raise ModelError(f"{message.fmu}: {message.text}")
 

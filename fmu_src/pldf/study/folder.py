@@ -11,6 +11,7 @@ import hashlib
 import json
 import platform
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -19,6 +20,7 @@ import numpy as np
 
 from .. import __version__
 from ..compiled import digest
+from ..cosim.fmu import Fmu
 from ..files.disk import replace_file
 from ..instance import Instance, ModelError
 from ..kernel.signals import signals_of
@@ -28,7 +30,7 @@ from .participants import Participant
 from .participants_file import participants_csv
 from .simulation import COMPILED_MODULES, prepared
 from .study_file import Study
-from .unit import Done
+from .unit import ParticipantResult
 
 DRIVES: Final = "drives.csv"
 PARTICIPANTS: Final = "participants.csv"
@@ -38,19 +40,19 @@ _PARTS: Final = "parts"
 _OURS: Final = (DRIVES, PARTICIPANTS, STUDY, VERSIONS, _PARTS, "recordings", "profiles")
 
 
-class Results:
-    """The results of ``study`` in the folder ``out``.
+class StudyFolder:
+    """The results of ``study`` in the folder ``out``, driven by ``fmus`` (None: the kernels).
 
     Raises:
         ModelError: the folder holds results of another study, or of this one with other versions.
     """
 
-    def __init__(self, study: Study, out: Path, through: str) -> None:
+    def __init__(self, study: Study, out: Path, fmus: Mapping[str, Fmu] | None = None) -> None:
         self.study = study
         self.out = out
         self._identity = {
             STUDY: study.source.encode(),
-            VERSIONS: _versions(study, through),
+            VERSIONS: _versions(study, fmus),
             PARTICIPANTS: participants_csv(study.participants),
         }
 
@@ -74,28 +76,28 @@ class Results:
         if self.complete:
             return []
         there = {path.stem for path in (self.out / _PARTS).glob("*.json")}
-        return [one for one in self.study.participants if one.id not in there]
+        return [person for person in self.study.participants if person.id not in there]
 
     @property
     def complete(self) -> bool:
         """Whether all drives are in ``drives.csv``."""
         return (self.out / DRIVES).exists()
 
-    def keep(self, done: Done) -> None:
+    def keep(self, result: ParticipantResult) -> None:
         """Write what came out for one participant; its part comes last."""
-        for name, content in done.files.items():
+        for name, content in result.files.items():
             path = self.out / name
             path.parent.mkdir(exist_ok=True)
             replace_file(path, content)
-        rows = json.dumps([row.cells for row in done.rows])
-        replace_file(self.out / _PARTS / f"{done.participant}.json", rows.encode())
+        rows = json.dumps([row.cells for row in result.rows])
+        replace_file(self.out / _PARTS / f"{result.participant}.json", rows.encode())
 
     def merge(self) -> None:
         """Make the tables from all parts and take the parts away."""
         if not self.complete:
             lines = [",".join(COLUMNS)]
-            for one in self.study.participants:
-                rows = json.loads((self.out / _PARTS / f"{one.id}.json").read_bytes())
+            for person in self.study.participants:
+                rows = json.loads((self.out / _PARTS / f"{person.id}.json").read_bytes())
                 lines += [",".join(_text(value) for value in row) for row in rows]
             replace_file(self.out / DRIVES, ("\n".join(lines) + "\n").encode())
         shutil.rmtree(self.out / _PARTS, ignore_errors=True)
@@ -123,7 +125,7 @@ def _text(value: Any) -> str:
     return value if isinstance(value, str) else repr(value)
 
 
-def _versions(study: Study, through: str) -> bytes:
+def _versions(study: Study, fmus: Mapping[str, Fmu] | None) -> bytes:
     """Return what the results depend on beside the study file, as JSON."""
     simulation = prepared(study.settings)
     models: dict[str, Instance[Any]] = {"pldf": simulation.function, "vehicle": simulation.vehicle}
@@ -132,7 +134,7 @@ def _versions(study: Study, through: str) -> bytes:
         route.update(np.asarray(column).tobytes())
     described = {
         "title": study.title,
-        "through": through,
+        "through": ", ".join(sorted({fmu.about for fmu in fmus.values()})) if fmus else "kernels",
         "adaptive-pldf": __version__,
         "source": digest(COMPILED_MODULES),
         "python": platform.python_version(),

@@ -1,12 +1,12 @@
-"""Arguments that several commands share."""
+"""``--set NAME=VALUE``."""
 
 from __future__ import annotations
 
 import argparse
 from typing import Any
 
-from ..instance import ModelError
-from ..settings import set_parameters
+from ...instance import ModelError
+from ...settings import set_parameters
 
 
 def add_settings(parser: argparse.ArgumentParser) -> None:

@@ -1,0 +1,1 @@
+"""What several commands share: arguments, progress, messages. No command of its own."""
