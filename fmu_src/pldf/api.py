@@ -160,7 +160,7 @@ def run_study(
 
     from .build.first_use import fmus_to_drive
     from .cosim.master import unpacked
-    from .study.folder import StudyFolder
+    from .study.results import StudyResults
     from .study.runner import in_processes, run_missing
     from .study.study_file import ONE_DRIVER, read_study, study_path
     from .study.unit import Job
@@ -169,7 +169,7 @@ def run_study(
     with ExitStack() as stack:
         through_fmus = study.through == "fmus"
         fmus = stack.enter_context(unpacked(fmus_to_drive().folder)) if through_fmus else None
-        folder = StudyFolder(study, Path(out or study.out), fmus)
+        folder = StudyResults(study, Path(out or study.out), fmus)
         folder.open(restart)
         run = in_processes(jobs or os.cpu_count() or 1)
         run_missing(folder, Job(study.settings, fmus), run, lambda _: None)

@@ -21,9 +21,9 @@ from pldf.build_version import build_version
 from pldf.instance import ModelError
 from pldf.recordings.recording import read_recording
 from pldf.study.drive_row import COLUMNS
-from pldf.study.folder import StudyFolder
 from pldf.study.participants import Participant
 from pldf.study.participants_file import read_participants
+from pldf.study.results import StudyResults
 from pldf.study.runner import ResultStream, in_processes, run_missing
 from pldf.study.study_file import Study, read_study
 from pldf.study.unit import Job, ParticipantResult, do_unit
@@ -152,7 +152,7 @@ def test_ctrl_c_and_a_killed_study_lose_nothing(how: signal.Signals, tmp_path: P
             "the same command goes on with the others",
             "pldf: interrupted",
         ]
-    folder = StudyFolder(read_study(study), out)
+    folder = StudyResults(read_study(study), out)
     assert len(folder.missing()) == CROWD - len(kept)
     assert cli.main([*arguments, "1"]) == 0
     with (out / "drives.csv").open() as file:

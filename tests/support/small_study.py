@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pldf.study.folder import StudyFolder
+from pldf.study.results import StudyResults
 from pldf.study.study_file import Study
 
 TEXT = """
@@ -27,7 +27,7 @@ def write_study(folder: Path, count: int = COUNT) -> Path:
     return path
 
 
-def opened(study: Study, out: Path) -> StudyFolder:
-    folder = StudyFolder(study, out)
+def opened(study: Study, out: Path) -> StudyResults:
+    folder = StudyResults(study, out)
     folder.open(restart=False)
     return folder

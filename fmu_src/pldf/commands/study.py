@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ..cosim.which_fmus import USUAL_FOLDER
-from ..study.folder import DRIVES, PARTICIPANTS, StudyFolder
+from ..study.results import DRIVES, PARTICIPANTS, StudyResults
 from ..study.runner import in_processes, on_cluster, run_missing
 from ..study.study_file import ONE_DRIVER, Study, changes_of, read_study, study_path
 from ..study.toml_file import Key
@@ -88,7 +88,7 @@ def run(options: argparse.Namespace) -> None:
     out: Path = options.out or study.out
     with ExitStack() as stack:
         fmus = stack.enter_context(chosen_fmus(options)) if through_fmus else None
-        folder = StudyFolder(study, out, fmus)
+        folder = StudyResults(study, out, fmus)
         folder.open(options.restart)
         _drive(options, folder, Job(study.settings, fmus))
     drives = len(study.participants) * len(study.settings.phases)
@@ -120,7 +120,7 @@ def _changes(options: argparse.Namespace) -> dict[Key, Any]:
     return {**changed, **changes_of(split_settings(options.settings))}
 
 
-def _drive(options: argparse.Namespace, folder: StudyFolder, job: Job) -> None:
+def _drive(options: argparse.Namespace, folder: StudyResults, job: Job) -> None:
     """Drive what is missing, with a bar; say what the FMUs warned of."""
     count, phases = len(folder.study.participants), len(job.settings.phases)
     done = count - len(folder.missing())

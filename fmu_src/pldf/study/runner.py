@@ -16,8 +16,8 @@ from multiprocessing import get_context
 from typing import Any, Final
 
 from ..instance import ModelError
-from .folder import StudyFolder
 from .participants import Participant
+from .results import StudyResults
 from .simulation import compile_all
 from .through_fmus import Watch
 from .unit import Job, ParticipantResult, do_unit
@@ -33,7 +33,7 @@ Run = Callable[[Job, list[Participant]], ResultStream]
 
 
 def run_missing(
-    folder: StudyFolder, job: Job, run: Run, progress: Callable[[ParticipantResult], None]
+    folder: StudyResults, job: Job, run: Run, progress: Callable[[ParticipantResult], None]
 ) -> None:
     """Drive the participants without results and merge all results.
 

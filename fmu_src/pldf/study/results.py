@@ -40,7 +40,7 @@ _PARTS: Final = "parts"
 _OURS: Final = (DRIVES, PARTICIPANTS, STUDY, VERSIONS, _PARTS, "recordings", "profiles")
 
 
-class StudyFolder:
+class StudyResults:
     """The results of ``study`` in the folder ``out``, driven by ``fmus`` (None: the kernels).
 
     Raises:
