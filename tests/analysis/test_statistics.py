@@ -7,16 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pldf.analysis.statistics import (
-    bootstrap_interval,
     cohen_dz,
     compare,
-    exact_p_value,
-    mean_interval,
-    normal_p_value,
     paired_t,
     rank_biserial,
     signed_rank,
-    t_p_value,
 )
 from scipy import stats
 
@@ -26,20 +21,34 @@ def rates(seed: int, people: int) -> tuple[np.ndarray, np.ndarray]:
     return rng.uniform(0.0, 0.6, people), rng.uniform(0.0, 0.4, people)
 
 
+def ranks_with(w: int, pairs: int) -> np.ndarray:
+    """Return differences 1 .. pairs, of which the one of rank ``w`` alone is negative."""
+    ranks = np.arange(1.0, pairs + 1.0)
+    ranks[w - 1] *= -1.0
+    return ranks
+
+
 def test_published_p_values_follow_from_the_published_statistics() -> None:
-    assert t_p_value(6.42, 42) == pytest.approx(9.78e-8, rel=0.02)  # t is rounded to 6.42
-    assert exact_p_value(1, 43) == pytest.approx(4.55e-13, rel=2e-3)
-    assert normal_p_value(24, 41) == pytest.approx(1.38e-7, rel=2e-3)
+    spread = rates(1, 43)[0]
+    standard = (spread - spread.mean()) / spread.std(ddof=1)
+    t = paired_t(standard + 6.42 / np.sqrt(43), np.zeros(43))
+    assert (t.t, t.df) == (pytest.approx(6.42), 42)
+    assert t.p == pytest.approx(9.78e-8, rel=0.02)  # t is rounded to 6.42
+    combined = signed_rank(ranks_with(1, 43), np.zeros(43))
+    assert (combined.w, combined.method) == (1.0, "exact")
+    assert combined.p == pytest.approx(4.55e-13, rel=2e-3)
+    set_speed = signed_rank(ranks_with(24, 41), np.zeros(41))
+    assert set_speed.p_normal == pytest.approx(1.38e-7, rel=2e-3)
     # What the paper did not do: none of these would round to its numbers.
-    assert normal_p_value(1, 43) > 1e-8
-    assert normal_p_value(24, 43) == pytest.approx(5.9e-8, rel=2e-3)
-    assert normal_p_value(24, 41, continuity=0.5) == pytest.approx(1.43e-7, rel=2e-3)
+    assert combined.p_normal > 1e-8
+    assert set_speed.p < 1e-8
+    assert set_speed.p_corrected == pytest.approx(1.43e-7, rel=2e-3)
+    all_pairs = signed_rank(ranks_with(24, 43), np.zeros(43))
+    assert all_pairs.p_normal == pytest.approx(5.9e-8, rel=2e-3)
 
 
 def test_two_drivers_without_lever_reproduce_the_published_set_speed_test() -> None:
-    ranks = np.arange(1.0, 42.0)
-    ranks[[23]] *= -1.0  # the rank 24 alone rises
-    found = signed_rank(np.append(ranks, [0.0, 0.0]), np.zeros(43))
+    found = signed_rank(np.append(ranks_with(24, 41), [0.0, 0.0]), np.zeros(43))
     assert (found.w, found.pairs, found.zeros, found.method) == (24.0, 41, 2, "normal")
     assert found.p == found.p_normal == pytest.approx(1.38e-7, rel=2e-3)
     assert found.p_corrected > found.p
@@ -93,13 +102,31 @@ def test_swapping_the_systems_changes_the_sign_only(pairs: list[tuple[int, int]]
     assert (back.d_z, back.rank_biserial) == pytest.approx((-there.d_z, -there.rank_biserial))
 
 
-def test_bootstrap_is_repeatable_and_near_the_t_interval() -> None:
-    values = rates(3, 43)[0]
-    drawn = bootstrap_interval(values, np.mean, seed=5)
-    assert drawn == bootstrap_interval(values, np.mean, seed=5)
-    assert drawn != bootstrap_interval(values, np.mean, seed=6)
-    expected = mean_interval(values)
-    assert (drawn.low, drawn.high) == pytest.approx((expected.low, expected.high), abs=0.01)
+@pytest.mark.filterwarnings("error")
+def test_differences_that_are_all_the_same_have_no_spread() -> None:
+    first, second = [0.3, 0.5, 0.7], [0.1, 0.3, 0.5]  # 0.2 each, but for rounding
+    found = compare(first, second)
+    assert (found.t.t, found.t.df, found.t.p, found.d_z) == (np.inf, 2, 0.0, np.inf)
+    back = compare(second, first)
+    assert (back.t.t, back.t.p, back.d_z) == (-np.inf, 0.0, -np.inf)
+    none = compare([0.1 + 0.2, 0.7, 0.1], [0.3, 0.7, 0.1])  # rounding is no effect
+    assert (none.t.t, none.t.p, none.d_z, none.signed_rank.pairs) == (0.0, 1.0, 0.0, 0)
+
+
+def exact_by_counting(w: int, pairs: int) -> float:
+    """Count in how many of the 2**pairs equally likely sign patterns each rank sum occurs."""
+    counts = [1] + [0] * (pairs * (pairs + 1) // 2)
+    for rank in range(1, pairs + 1):
+        for total in range(len(counts) - 1, rank - 1, -1):
+            counts[total] += counts[total - rank]
+    return 2 * sum(counts[: w + 1]) / 2**pairs
+
+
+@pytest.mark.parametrize(("w", "pairs"), [(1, 43), (24, 41), (10, 12), (50, 50)])
+def test_exact_p_values_count_all_patterns_of_signs(w: int, pairs: int) -> None:
+    found = signed_rank(ranks_with(w, pairs), np.zeros(pairs))
+    assert (found.w, found.method) == (w, "exact")
+    assert found.p == pytest.approx(exact_by_counting(w, pairs), rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ from ..study.drive_row import DriveRow
 from ..study.phases import PHASES, Phase
 from .drives_table import check_complete, check_phase, read_drives, row_of
 from .questionnaire import Questionnaire, read_questionnaire
-from .statistics import Comparison, Interval, compare, mean_interval
+from .statistics import Comparison, MeanInterval, compare, mean_interval
 
 SYSTEMS: Final = ("A", "B")
 RATES: Final = Rates._fields
@@ -161,15 +161,15 @@ class Analysis:
         """Return one rate in ``phase`` by participant; NaN for those who did not drive it."""
         return mean_rates(self.drives, self.participants, measure, (phase,))
 
-    def interval(self, phase: str, measure: str) -> Interval:
+    def interval(self, phase: str, measure: str) -> MeanInterval:
         """Return the mean rate of a phase with its 95 % confidence interval, within 0 and 1."""
         rates = self.rate(phase, measure)
         rates = rates[np.isfinite(rates)]
         mean = float(np.mean(rates))
         if len(rates) < PARTICIPANTS_MIN:
-            return Interval(mean, mean, mean)
+            return MeanInterval(mean, mean, mean)
         interval = mean_interval(rates)
-        return Interval(mean, max(interval.low, 0.0), min(interval.high, 1.0))
+        return MeanInterval(mean, max(interval.low, 0.0), min(interval.high, 1.0))
 
     def per_participant(self, measure: str, system: str) -> FloatArray:
         """Return what each participant counts with, in the order of ``participants``."""
