@@ -35,7 +35,7 @@ SOURCE = re.compile(r"[\w./-]+\.(?:py|[ch]|yml|yaml)")
 WRITTEN = {"dist", "out", "site"}  # by commands
 GENERATED = {"table.c", "table.h"}  # by the native build
 VARIABLE = re.compile(r"[a-z]+(?:_[a-z]+)*\.[a-z_0-9]+(?:\.[a-z_0-9]+)*")
-FILE_ENDINGS = (".csv", ".pldf", ".ssv", ".py", ".c", ".h", ".toml")
+FILE_ENDINGS = (".csv", ".pldf", ".png", ".ssv", ".py", ".c", ".h", ".toml")
 NAME_TABLES = ("input", "parameter", "Parameter")
 
 
@@ -254,3 +254,11 @@ def test_every_section_of_the_algorithm_that_is_cited_is_there() -> None:
     }
     assert {"1", "3.7", "5"} <= cited
     assert cited <= sections, cited - sections
+
+
+def test_the_version_is_the_same_everywhere() -> None:
+    version = pldf.__version__
+    assert f"adaptive_pldf-{version}-py3-none-any.whl" in text_of(ROOT / "README.md")
+    assert f"\nversion: {version}\n" in text_of(ROOT / "CITATION.cff")
+    assert re.search(rf"^## \[{version}\] - ", text_of(ROOT / "CHANGELOG.md"), re.MULTILINE)
+    assert f"Adaptive PLDF {version}" in text_of(ROOT / "ssp" / "SystemStructure.ssd")
