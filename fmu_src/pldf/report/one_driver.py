@@ -12,7 +12,7 @@ import numpy as np
 from rich.table import Table
 
 from ..analysis.drives_table import read_drives
-from ..analysis.published import PUBLISHED
+from ..analysis.published import DRIVERS, PUBLISHED
 from ..profiles.store import ProfileStore, StoredProfile
 from ..recordings.interventions import Rates
 from ..recordings.recording import Recording, read_recording
@@ -64,7 +64,7 @@ def table_of(study: Study, out: Path) -> Table:
     phases = {phase.name: phase for phase in study.settings.phases}
     table = Table(
         title="Pedal interventions and shares of the driving time in %",
-        caption="paper: mean of 43 drivers over both drives with interventions",
+        caption=f"paper: mean of {DRIVERS} drivers over both drives with interventions",
     )
     for heading in ("Drive", "Profile", "Learns", "Time", "Uses"):
         table.add_column(heading, justify="right" if heading in ("Time", "Uses") else "left")

@@ -1,0 +1,38 @@
+"""What a report is made of, read from the folder of a study."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from pldf.analysis.analysis import StudyFolder, analyse
+from pldf.cli import main
+from pldf.instance import ModelError
+from pldf.report.contents import Contents, collect
+
+
+def test_the_steps_of_the_intervention_fit_together(contents: Contents) -> None:
+    assert contents.driver is not None
+    steps = contents.driver.steps
+    assert steps is not None
+    end = steps.piece_m[-1]
+    assert steps.stretched_m[-1] == end
+    assert steps.joined_mps[-1] == pytest.approx(steps.recorded_mps[-1])
+    start = steps.stretched_m[0]
+    at = int(start - steps.node_m[0])
+    assert steps.driven_mps[at] == pytest.approx(steps.joined_mps[0], abs=0.2)
+    inside = (steps.node_m > start) & (steps.node_m < end)
+    assert abs(steps.mean_mps - steps.followed_mps)[inside].max() > 0.5
+
+
+def test_only_who_was_recorded_can_be_shown(folder: Path) -> None:
+    with pytest.raises(ModelError, match=r"recordings/P002_A2.csv.*recorded are P001"):
+        collect(analyse(StudyFolder(folder)), StudyFolder(folder), "P002")
+
+
+def test_a_report_on_the_wrong_road_is_refused(folder: Path, tmp_path: Path) -> None:
+    road = tmp_path / "road.csv"
+    road.write_text("s_m,curvature_per_m,speed_limit_mps\n0,0,20\n4500,0,20\n")
+    source = ["analyse", str(folder), "--route", str(road), "--report", str(tmp_path / "r.html")]
+    assert main(source) == 1
+    assert not (tmp_path / "r.html").exists()
