@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import math
+from collections.abc import Iterator
+from math import isnan
 from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
+from pldf.files.tables import Column, Fault, Format, Table, read_table
 from pldf.instance import ModelError
 
 from .script_kernel import (
@@ -38,7 +39,19 @@ CONTROLS: Final = {
     "up_long": UP_LONG,
     "down_long": DOWN_LONG,
 }
-COLUMNS: Final = ("at", "unit", "control", "value", "duration_s")
+PEDALS: Final = ("gas", "brake")
+SCRIPT: Final = Format(
+    "driver script",
+    "event",
+    (
+        Column("at", low=0.0, high=1e9),
+        Column("unit", "word", words=tuple(UNITS)),
+        Column("control", "word", words=tuple(CONTROLS)),
+        Column("value", low=0.0, high=1.0, blank=True),
+        Column("duration_s", unit="s", low=1e-3, high=1e6),
+    ),
+)
+COLUMNS: Final = SCRIPT.names
 
 
 class Event(NamedTuple):
@@ -60,24 +73,25 @@ def packed_script(script_id: int) -> Path:
 
 
 def read_script(path: Path) -> list[Event]:
-    """Read a script's events in the order of the file; ModelError names file and line."""
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "not a UTF-8 text file"
-        raise ModelError(f"cannot read the driver script {path}: {reason}") from error
-    lines = [
-        (number, line)
-        for number, line in enumerate(text.splitlines(), start=1)
-        if line.strip() and not line.lstrip().startswith("#")
+    """Read a script's events in the order of the file.
+
+    Raises:
+        ModelError: naming file, line, column and value of what cannot be used.
+    """
+    table = read_table(path, SCRIPT)
+    table.refuse(_unfit_values(table))
+    units, controls = list(UNITS.values()), list(CONTROLS.values())
+    rows = zip(*(table.numbers[name].tolist() for name in COLUMNS), strict=True)
+    return [
+        Event(
+            at=at,
+            unit=units[int(unit)],
+            control=controls[int(control)],
+            value=1.0 if isnan(value) else value,
+            duration_s=duration_s,
+        )
+        for at, unit, control, value, duration_s in rows
     ]
-    rows = zip((number for number, _ in lines), csv.reader(line for _, line in lines), strict=True)
-    number, header = next(rows, (1, []))
-    place = _columns(f"{path}, line {number}", [name.strip() for name in header])
-    events = [_event(f"{path}, line {number}", place, row) for number, row in rows]
-    if not events:
-        raise ModelError(f"{path}: no events; each line below the header is one event")
-    return events
 
 
 def script_arrays(events: list[Event]) -> ScriptArrays:
@@ -86,48 +100,13 @@ def script_arrays(events: list[Event]) -> ScriptArrays:
     return ScriptArrays(*(*columns, np.full(len(events), -1.0)))
 
 
-def _columns(where: str, header: list[str]) -> dict[str, int]:
-    missing = [name for name in COLUMNS if name not in header]
-    if missing:
-        raise ModelError(f"{where}: no column {missing[0]}; the header is {','.join(COLUMNS)}")
-    return {name: header.index(name) for name in COLUMNS}
-
-
-def _event(where: str, place: dict[str, int], row: list[str]) -> Event:
-    if len(row) <= max(place.values()):
-        raise ModelError(f"{where}: {len(row)} fields, expected {','.join(place)}")
-    cells = {name: row[column].strip() for name, column in place.items()}
-    control = _word(where, "control", cells["control"], CONTROLS)
-    return Event(
-        at=_number(where, "at", cells["at"], (0.0, 1e9)),
-        unit=_word(where, "unit", cells["unit"], UNITS),
-        control=control,
-        value=_value(where, control, cells["value"]),
-        duration_s=_number(where, "duration_s", cells["duration_s"], (1e-3, 1e6)),
-    )
-
-
-def _value(where: str, control: int, text: str) -> float:
+def _unfit_values(table: Table) -> Iterator[Fault]:
     """Pedals need their travel; a lever contact is closed, so its value is empty or 1."""
-    if control in (GAS, BRAKE):
-        return _number(where, "value", text, (0.0, 1.0))
-    if text not in ("", "1"):
-        raise ModelError(f"{where}: value '{text}' for the lever; leave it empty")
-    return 1.0
-
-
-def _number(where: str, name: str, text: str, allowed: tuple[float, float]) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not allowed[0] <= number <= allowed[1]:
-        low, high = allowed
-        raise ModelError(f"{where}: {name} '{text}'; a number from {low:g} to {high:g} is needed")
-    return number
-
-
-def _word(where: str, name: str, text: str, words: dict[str, int]) -> int:
-    if text not in words:
-        raise ModelError(f"{where}: {name} '{text}' is unknown; use one of {', '.join(words)}")
-    return words[text]
+    controls, values = (table.numbers[name].tolist() for name in ("control", "value"))
+    words = list(CONTROLS)
+    for row, (control, value) in enumerate(zip(controls, values, strict=True)):
+        word = words[int(control)]
+        if word in PEDALS and isnan(value):
+            yield table.fault(row, "value", f"'' is not a number from 0 to 1; {word} needs one")
+        elif word not in PEDALS and not (isnan(value) or value == 1.0):
+            yield table.fault(row, "value", f"'{value:g}' for the lever; leave it empty")

@@ -128,12 +128,16 @@ def test_recordings_of_a_laboratory_give_the_rates_of_section_4(tmp_path: Path) 
     [
         ("P2,B1,", "P2,B4,", "participant P2 has no drive B1"),
         ("P2,B1,", "P2,B2,", "line 12: participant P2 has phase B2 already"),
-        ("P2,B1,", "P2,C1,", "line 11, participant P2: phase 'C1'"),
-        ("P2,B1,0.23", "P2,B1,23", "line 11, participant P2, phase B1, pedal_rate: 23 is no share"),
+        ("P2,B1,", "P2,C1,", "line 11, participant P2, phase: 'C1' is not A or B and the number"),
+        (
+            "P2,B1,0.23",
+            "P2,B1,23",
+            "line 11, participant P2, phase B1, pedal_rate: '23' is not a number from 0 to 1",
+        ),
         ("P2,B1,0.23", "P2,B1,x", "pedal_rate: 'x' is not a number"),
         ("P2,B1,0.23", "P2,B1,", "pedal_rate: '' is not a number"),
         ("P2,B1,", "P2,B1,1,", "line 11: 6 values for 5 columns"),
-        ("P2,B1,", ",B1,", "line 11: no participant"),
+        ("P2,B1,", ",B1,", "line 11, participant: '' is not the name of"),
         ("pedal_rate", "pedals", "line 1: missing column pedal_rate"),
     ],
 )
@@ -199,11 +203,14 @@ def test_reversed_items_reliability_and_answers_after_each_drive(tmp_path: Path)
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        ({("P3", "B", "laan_4"): ""}, "line 7, participant P3, system B: no answer to laan_4"),
-        ({("P3", "B", "laan_4"): "-2"}, "participant P3, system B, laan_4: '-2' is no answer"),
-        ({("P3", "B", "profile_2"): "6"}, "profile_2: '6' is no answer"),
+        ({("P3", "B", "laan_4"): ""}, "line 7, participant P3, system B, laan_4: '' is not the"),
+        (
+            {("P3", "B", "laan_4"): "-2"},
+            "P3, system B, laan_4: '-2' is not the number of a box",
+        ),
+        ({("P3", "B", "profile_2"): "6"}, "profile_2: '6' is not the number of a box"),
         ({("P3", "B", "system"): "A"}, "line 7, participant P3, system A: answered in line 6"),
-        ({("P3", "B", "system"): "C"}, "neither a system"),
+        ({("P3", "B", "system"): "C"}, "line 7, participant P3, system: 'C' is not a system"),
         ({("P3", "B", "participant"): "P9"}, "participant P3 has no answers (usefulness)"),
     ],
 )

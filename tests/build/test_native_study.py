@@ -128,8 +128,8 @@ def test_roads_and_scripts_are_prepared_on_the_way(
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["--script", "none.csv"], "cannot read the driver script {}none.csv: No such file"),
-        (["--script", "road.csv"], "{}road.csv, line 1: no column at; the header is at,unit"),
+        (["--script", "none.csv"], "{}none.csv: cannot be read (No such file"),
+        (["--script", "road.csv"], "{}road.csv, line 1: missing column at, unit, control"),
         (["--set", "pldf.route_file=script.csv"], "script.csv, line 1: missing column s_m"),
     ],
 )

@@ -108,7 +108,7 @@ def test_bad_files_exit_with_1_and_one_or_two_lines(run: Run) -> None:
     Path("foreign.csv").write_text("s_m,kappa_1pm,maxspeed_kmh\n0,0,50\n")
     Path("folder").mkdir()
     for name, told in {
-        "bad.csv": "bad.csv, line 3: curvature_per_m = 'x' is not a number",
+        "bad.csv": "bad.csv, line 3, curvature_per_m: 'x' is not a number",
         "foreign.csv": "missing column curvature_per_m, speed_limit_mps",
         "none.csv": "none.csv: cannot be read (No such file or directory)",
         "folder": "folder: cannot be read",

@@ -86,10 +86,13 @@ def test_long_scripts_are_summed_up(run: Run) -> None:
     ("content", "told"),
     [
         (HEADER, "bad.csv: no events"),
-        ("at,unit\n1,s\n", "bad.csv, line 1: no column control; the header is at,unit,control"),
-        (HEADER + "\n# why\n1,s,horn,,1\n", "bad.csv, line 4: control 'horn' is unknown; use one"),
-        (HEADER + "1,s,gas,30,1\n", "bad.csv, line 2: value '30'; a number from 0 to 1 is needed"),
-        (None, "cannot read the driver script bad.csv: No such file or directory"),
+        (
+            "at,unit\n1,s\n",
+            "bad.csv, line 1: missing column control, value, duration_s; a",
+        ),
+        (HEADER + "\n# why\n1,s,horn,,1\n", "bad.csv, line 4, control: 'horn' is not one of gas"),
+        (HEADER + "1,s,gas,30,1\n", "bad.csv, line 2, value: '30' is not a number from 0 to 1"),
+        (None, "bad.csv: cannot be read (No such file or directory)"),
     ],
 )
 def test_bad_scripts_exit_with_1_one_line_and_no_file(

@@ -192,15 +192,15 @@ def test_explicit_participants_in_a_study(tmp_path: Path) -> None:
 
 
 CSV_ERRORS = {
-    "": "no participants",
+    "": "no header; a list of participants has the columns seed",
     "seed\n": "no participants",
-    "participant\nP001": "line 1: no column seed",
-    "seed,height\n1,2": "line 1: unknown column 'height'; known are participant, seed, wish.offset",
-    "seed,seed\n1,2": "line 1: column seed occurs twice",
+    "participant\nP001": "line 1: missing column seed; a list of participants has",
+    "seed,height\n1,2": "line 1: unknown column height; a list of participants has the columns",
+    "seed,seed\n1,2": "line 1: repeated column seed",
     "seed\n1,2": "line 2: 2 values for 1 columns",
     "seed\n1\n-1": "line 3, seed: '-1' is not a whole number from 0 to",
     "seed,wish.offset_mps\n1,x": "line 2, wish.offset_mps: 'x' is not a number from -20 to 30",
-    "seed,driver.uses_lever\n1,0.5": "line 2, driver.uses_lever: '0.5' is not a whole number",
+    "seed,driver.uses_lever\n1,0.5": "line 2, driver.uses_lever: '0.5' is not 0 or 1",
     "seed,participant\n1,Anna": "line 2, participant: 'Anna' is not P and a number",
     "seed,participant\n1,P002\n1,P002": "line 3, participant: P002 occurs twice",
 }

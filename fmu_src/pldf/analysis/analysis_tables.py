@@ -7,11 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..files.disk import replace_file
+from ..files.tables import Cell, write_table
 from .analysis import RATES, Analysis
 from .statistics import Comparison, compare
-
-Cell = str | int | float
 
 
 def write_tables(analysis: Analysis, folder: Path) -> list[Path]:
@@ -24,14 +22,10 @@ def write_tables(analysis: Analysis, folder: Path) -> list[Path]:
     }
     if analysis.questionnaire:
         tables["items.csv"] = _items(analysis)
-    for name, rows in tables.items():
-        lines = (",".join(_text(cell) for cell in row) for row in rows)
-        replace_file(folder / name, ("\n".join(lines) + "\n").encode())
+    for name, (header, *rows) in tables.items():
+        columns = zip(*rows, strict=True)
+        write_table(folder / name, dict(zip(map(str, header), columns, strict=True)))
     return [folder / name for name in tables]
-
-
-def _text(cell: Cell) -> str:
-    return repr(float(cell)) if isinstance(cell, float) else str(cell)
 
 
 def _participants(analysis: Analysis) -> list[Sequence[Cell]]:

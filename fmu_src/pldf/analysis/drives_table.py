@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Collection, Iterator, Sequence
-from math import isfinite, nan
+from math import isnan, nan
 from pathlib import Path
-from typing import Final
 
+from ..files.tables import Fault, Table, read_table
 from ..instance import ModelError
 from ..recordings.interventions import pedal_interventions, rates_of
 from ..recordings.recording import Recording
-from ..study.drive_row import COLUMNS, DriveRow
-
-NEEDED: Final = ("participant", "phase", "pedal_rate", "set_speed_rate", "combined_rate")
+from ..study.drive_row import DRIVES, PHASE, DriveRow
 
 
 def row_of(participant: str, phase: str, recording: Recording, where: str) -> DriveRow:
@@ -36,83 +33,37 @@ def read_drives(path: Path, without: Collection[str] = ()) -> list[DriveRow]:
     """Read the drives in the CSV file ``path``, in order, but those of some participants.
 
     Raises:
-        ModelError: naming file, line and column of the first thing that cannot be used.
+        ModelError: naming file, line, participant, phase, column and value of what is wrong.
     """
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            return list(_read(path, file, without))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise ModelError(f"{path}: cannot be read as a CSV text file ({error})") from error
+    table = read_table(path, DRIVES, {"participant": without})
+    table.refuse(_other_systems(table))
+    return [_drive(table, row) for row in range(len(table))]
 
 
-def _read(path: Path, lines: Iterator[str], without: Collection[str]) -> Iterator[DriveRow]:
-    numbered = ((number, line) for number, line in enumerate(lines, start=1))
-    told = [(n, next(csv.reader([line]))) for n, line in numbered if _counts(line)]
-    if not told:
-        raise ModelError(f"{path}: empty; the first line is {','.join(COLUMNS)}")
-    first, header = told[0]
-    missing = [name for name in NEEDED if name not in header]
-    if missing:
-        raise ModelError(f"{path}, line {first}: missing column {', '.join(missing)}")
-    for number, cells in told[1:]:
-        where = f"{path}, line {number}"
-        if len(cells) != len(header):
-            raise ModelError(f"{where}: {len(cells)} values for {len(header)} columns")
-        row = dict(zip(header, (cell.strip() for cell in cells), strict=True))
-        if row["participant"] not in without:
-            yield _drive(where, row)
-
-
-def _counts(line: str) -> bool:
-    return bool(line.strip()) and not line.startswith("#")
-
-
-def _drive(where: str, row: dict[str, str]) -> DriveRow:
-    participant, phase = row["participant"], row["phase"]
-    if not participant:
-        raise ModelError(f"{where}: no participant")
-    check_phase(f"{where}, participant {participant}", phase)
-    where_drive = f"{where}, participant {participant}, phase {phase}"
-    if row.get("system", phase[0]) != phase[0]:
-        raise ModelError(f"{where_drive}: the system is {row['system']}, not {phase[0]}")
-    shares = [_number(where_drive, row, name) for name in NEEDED[2:]]
-    for name, share in zip(NEEDED[2:], shares, strict=True):
-        if not 0.0 <= share <= 1.0:
-            raise ModelError(f"{where_drive}, {name}: {share:g} is no share of time, 0 to 1")
+def _drive(table: Table, row: int) -> DriveRow:
+    numbers = {name: float(values[row]) for name, values in table.numbers.items()}
+    numbers.pop("system", None)
+    position = numbers.pop("position", nan)
     return DriveRow(
-        participant=participant,
-        phase=phase,
-        pedal_rate=shares[0],
-        set_speed_rate=shares[1],
-        combined_rate=shares[2],
-        position=int(_optional(where_drive, row, "position", 0.0)),
-        duration_s=_optional(where_drive, row, "duration_s"),
-        interventions=_optional(where_drive, row, "interventions"),
-        wish_error_mps=_optional(where_drive, row, "wish_error_mps"),
-        where=where,
+        participant=table.texts["participant"][row],
+        phase=table.texts["phase"][row],
+        position=0 if isnan(position) else int(position),
+        where=f"{table.path}, line {table.lines[row]}",
+        **numbers,
     )
+
+
+def _other_systems(table: Table) -> Iterator[Fault]:
+    for row, place in enumerate(table.numbers.get("system", ())):
+        system, phase = "AB"[int(place)], table.texts["phase"][row]
+        if system != phase[0]:
+            yield table.fault(row, "system", f"{system!r} is not that of the phase, {phase[0]}")
 
 
 def check_phase(where: str, phase: str) -> None:
     """Raise ModelError unless ``phase`` is A or B and the number of the drive."""
-    if not re.fullmatch(r"[AB][1-9]\d*", phase):
-        raise ModelError(
-            f"{where}: phase {phase!r} is not A or B and the number of the drive, such as A1"
-        )
-
-
-def _optional(where: str, row: dict[str, str], name: str, absent: float = nan) -> float:
-    return _number(where, row, name) if row.get(name) else absent
-
-
-def _number(where: str, row: dict[str, str], name: str) -> float:
-    try:
-        value = float(row[name])
-    except ValueError:
-        value = nan
-    if not isfinite(value):
-        raise ModelError(f"{where}, {name}: {row[name]!r} is not a number")
-    return value
+    if not re.fullmatch(PHASE.pattern, phase):
+        raise ModelError(f"{where}: phase {phase!r} is not {PHASE.description}")
 
 
 def check_complete(drives: Sequence[DriveRow], needed: Collection[str], source: str) -> None:

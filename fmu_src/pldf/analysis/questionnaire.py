@@ -12,17 +12,15 @@ after items worded negatively (``_reversed`` behind the column's name) have been
 
 from __future__ import annotations
 
-import csv
-import io
-import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from ..instance import ModelError
+from ..files.tables import Column, Fault, Format, Table, read_table
+from ..kernel.arrays import FloatArray
 
 LAAN: Final = tuple(f"laan_{number}" for number in range(1, 10))
 LAAN_WORDS: Final = (
@@ -45,6 +43,35 @@ _FAVOURABLE_RIGHT: Final = ("laan_3", "laan_6", "laan_8")
 SCALES: Final = {"usefulness": _USEFULNESS, "satisfying": _SATISFYING, "speed_profile": PROFILE}
 SCALE_RANGES: Final = {"usefulness": (-2, 2), "satisfying": (-2, 2), "speed_profile": (1, 5)}
 _BOXES: Final = 5
+
+GROUPS: Final = ("system", "phase")  # either says after which drives the answers were given
+_TICKED: Final = (
+    "the number of a box, 1 (left) to 5 (right); correct it or leave the participant out "
+    "with --without"
+)
+QUESTIONNAIRE: Final = Format(
+    "questionnaire",
+    "answer",
+    (
+        Column("participant", "text", wanted="the name of a participant"),
+        *(
+            Column(
+                name,
+                "text",
+                pattern="[AB][0-9]*",
+                wanted="a system, A or B, or one of its drives, such as A1",
+                needed=False,
+            )
+            for name in GROUPS
+        ),
+        *(
+            Column(name, "whole", low=1.0, high=_BOXES, wanted=_TICKED, needed=False)
+            for name in (*LAAN, *PROFILE, *(item + REVERSED for item in PROFILE))
+        ),
+    ),
+    rows_min=0,
+    key=("participant", *GROUPS),
+)
 
 Key = tuple[str, str]
 
@@ -82,32 +109,16 @@ def read_questionnaire(path: Path, without: Collection[str] = ()) -> Questionnai
         without: participants to pass over.
 
     Raises:
-        ModelError: naming file, line and column of what is missing or no answer.
+        ModelError: naming file, line, column and value of what is missing or no answer.
     """
-    (header_line, header), *lines = _rows(path)
-    names = [name.removesuffix(REVERSED) for name in header]
-    group = next((name for name in ("system", "phase") if name in names), None)
-    if group is None or "participant" not in names:
-        raise ModelError(
-            f"{path}, line {header_line}: needs the columns participant and system (or phase)"
-        )
-    turned = frozenset(name.removesuffix(REVERSED) for name in header if name not in names)
-    scales = _scales_of(path, header_line, names)
-    found: dict[str, dict[Key, list[float]]] = {i: {} for scale in scales for i in SCALES[scale]}
-    lines_of: dict[Key, int] = {}
-    for line, cells in lines:
-        if len(cells) != len(header):
-            raise ModelError(f"{path}, line {line}: {len(cells)} values for {len(header)} columns")
-        row = dict(zip(names, cells, strict=True))
-        if row["participant"] in without:
-            continue
-        answered = row["participant"], row[group]
-        where = f"{path}, line {line}, participant {answered[0]}, {group} {answered[1]}"
-        if lines_of.setdefault(answered, line) != line:
-            raise ModelError(f"{where}: answered in line {lines_of[answered]} already")
-        key = _key(where, *answered)
-        for item, answers in found.items():
-            answers.setdefault(key, []).append(_scored(where, item, row[item], item in turned))
+    table = read_table(path, QUESTIONNAIRE, {"participant": without})
+    scales = _scales_of(table)
+    keys = _keys(table)
+    found: dict[str, dict[Key, list[float]]] = {}
+    for item in (item for scale in scales for item in SCALES[scale]):
+        answers = found[item] = {}
+        for key, value in zip(keys, _scored(table, item).tolist(), strict=True):
+            answers.setdefault(key, []).append(value)
     return _with_scores(found, scales)
 
 
@@ -128,57 +139,46 @@ def _with_scores(
     return Questionnaire(items, scores)
 
 
-def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
-    """Yield (line number, cells) of each line that is neither empty nor a comment."""
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise ModelError(f"{path}: cannot be read as a CSV text file ({error})") from error
-    count = 0
-    for number, line in enumerate(text.splitlines(), start=1):
-        if line.strip() and not line.startswith("#"):
-            count += 1
-            yield number, [cell.strip() for cell in next(csv.reader(io.StringIO(line)))]
-    if not count:
-        raise ModelError(f"{path}: empty; the first line names the columns")
-
-
-def _scales_of(path: Path, line: int, names: Sequence[str]) -> list[str]:
+def _scales_of(table: Table) -> list[str]:
     """Return the scales whose items are there; a scale that is there in part is an error."""
+    faults = []
+    if not any(name in table for name in GROUPS):
+        faults.append(f"missing column {' or '.join(GROUPS)}")
     present = []
     for scale, items in SCALES.items():
-        missing = [item for item in items if item not in names]
+        missing = [item for item in items if not _columns_of(table, item)]
         if not missing:
             present.append(scale)
         elif len(missing) < len(items):
-            raise ModelError(
-                f"{path}, line {line}: missing column {', '.join(missing)} of the scale "
-                f"{scale} ({', '.join(items)})"
-            )
-    if not present:
-        raise ModelError(
-            f"{path}, line {line}: no items; columns are laan_1 .. laan_9, profile_1 .. profile_6"
-        )
+            absent = ", ".join(missing)
+            faults.append(f"missing column {absent} of the scale {scale} ({', '.join(items)})")
+    if not present and not faults:
+        faults.append("no items; columns are laan_1 .. laan_9, profile_1 .. profile_6")
+    twice = [item for item in PROFILE if len(_columns_of(table, item)) > 1]
+    faults += [f"columns {item} and {item}{REVERSED}; keep one of them" for item in twice]
+    table.refuse(Fault(table.header_line, "", text) for text in faults)
     return present
 
 
-def _key(where: str, participant: str, group: str) -> Key:
-    if not participant:
-        raise ModelError(f"{where}: no participant")
-    if not re.fullmatch(r"[AB]\d*", group):
-        raise ModelError(f"{where}: neither a system, A or B, nor one of its drives, such as A1")
-    return participant, group[0]
+def _columns_of(table: Table, item: str) -> list[str]:
+    return [name for name in (item, item + REVERSED) if name in table]
 
 
-def _scored(where: str, item: str, text: str, turned: bool) -> float:
-    if not text:
-        raise ModelError(f"{where}: no answer to {item}; leave the participant out with --without")
-    if text not in ("1", "2", "3", "4", "5"):
-        raise ModelError(
-            f"{where}, {item}: {text!r} is no answer; give the number of the box ticked, "
-            "1 (left) to 5 (right)"
-        )
-    box = int(text)
+def _keys(table: Table) -> list[Key]:
+    """Return participant and system of each row; nobody answers twice after the same drives."""
+    group = next(name for name in GROUPS if name in table)
+    answered = list(zip(table.texts["participant"], table.texts[group], strict=True))
+    table.refuse(
+        table.fault(row, "", f"answered in line {line} already")
+        for row, line in table.repeated(answered)
+    )
+    return [(participant, drives[0]) for participant, drives in answered]
+
+
+def _scored(table: Table, item: str) -> FloatArray:
+    """Return the answers to an item, the favourable being the higher one."""
+    (name,) = _columns_of(table, item)
+    boxes = table.numbers[name]
     if item in PROFILE:
-        return float(_BOXES + 1 - box if turned else box)
-    return float(box - 3 if item in _FAVOURABLE_RIGHT else 3 - box)
+        return _BOXES + 1.0 - boxes if name.endswith(REVERSED) else boxes
+    return boxes - 3.0 if item in _FAVOURABLE_RIGHT else 3.0 - boxes

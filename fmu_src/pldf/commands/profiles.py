@@ -12,6 +12,7 @@ from typing import Final
 
 import numpy as np
 
+from ..files.tables import table_csv, write_table
 from ..instance import ModelError
 from ..kernel.arrays import FloatArray
 from ..kernel.units import KMH_PER_MPS
@@ -187,22 +188,16 @@ def _history(options: argparse.Namespace) -> None:
 def _export(options: argparse.Namespace) -> None:
     profile = read_profile(_path(options))
     iteration = profile.iteration(options.iteration)
-    columns = (
-        np.arange(profile.nodes, dtype=np.float64),
-        profile.base_mps,
-        iteration.learned_mps,
-        iteration.offset_mps,
-    )
-    rows = zip(*(column.tolist() for column in columns), strict=True)
-    lines = ["s_m,base_mps,learned_mps,offset_mps", *(",".join(map(repr, row)) for row in rows)]
-    text = "\n".join(lines) + "\n"
+    columns = {
+        "s_m": np.arange(profile.nodes, dtype=np.float64),
+        "base_mps": profile.base_mps,
+        "learned_mps": iteration.learned_mps,
+        "offset_mps": iteration.offset_mps,
+    }
     if options.out is None:
-        sys.stdout.write(text)
-        return
-    try:
-        options.out.write_text(text, encoding="ascii", newline="\n")
-    except OSError as error:
-        raise ModelError(f"{options.out}: cannot be written ({error.strerror})") from error
+        sys.stdout.write(table_csv(columns).decode())
+    else:
+        write_table(options.out, columns)
 
 
 def _rollback(options: argparse.Namespace) -> None:

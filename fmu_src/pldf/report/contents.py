@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -13,6 +12,7 @@ import numpy as np
 
 from ..analysis.analysis import Analysis, StudyFolder
 from ..analysis.long_run import Columns, read_long_run
+from ..files.tables import read_table
 from ..function import DrivingFunction
 from ..instance import ModelError
 from ..kernel.parameters import PlannerParameters
@@ -22,6 +22,7 @@ from ..recordings.recording import Recording
 from ..recordings.steps import Steps, explain_steps
 from ..roads import Route, fingerprint, open_route, route_arrays
 from ..route_facts import RouteFacts, route_facts
+from ..study.participants_file import PARTICIPANTS
 
 STUDY: Final = "study.toml"
 VERSIONS: Final = "versions.json"
@@ -149,17 +150,12 @@ def _parameter_ranges(path: Path) -> Mapping[str, tuple[float, float, float]]:
     """Return smallest, median and largest value of each parameter of the simulated drivers."""
     if not path.exists():
         return {}
-    with path.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    found = {}
-    for name in rows[0] if rows else ():
-        if name not in ("participant", "seed"):
-            try:
-                values = [float(row[name]) for row in rows]
-            except ValueError as error:
-                raise ModelError(f"{path}, {name}: {error}") from error
-            found[name] = (min(values), float(np.median(values)), max(values))
-    return found
+    numbers = read_table(path, PARTICIPANTS).numbers
+    return {
+        name: (float(np.min(values)), float(np.median(values)), float(np.max(values)))
+        for name, values in numbers.items()
+        if name != "seed"
+    }
 
 
 def _choose(analysis: Analysis, source: StudyFolder, wanted: str | None) -> str | None:

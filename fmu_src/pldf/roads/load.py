@@ -41,12 +41,7 @@ def read_route(
         return parse_opendrive(
             data, path, start_road=start_road, default_limit_mps=default_limit_mps
         )
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise ModelError(f"{path}, line {line}: not UTF-8 text; save the file as UTF-8") from None
-    return parse_route_csv(text, path)
+    return parse_route_csv(data, path)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,10 +6,33 @@ from dataclasses import dataclass, field
 from math import nan
 from typing import Final
 
-COLUMNS: Final = (
-    "participant", "phase", "system", "position", "duration_s",
-    "pedal_rate", "set_speed_rate", "combined_rate", "interventions", "wish_error_mps",
-)  # fmt: skip
+from ..files.tables import Column, Format
+
+PHASE: Final = Column(
+    "phase",
+    "text",
+    pattern=r"[AB][1-9][0-9]*",
+    wanted="A or B and the number of the drive, such as A1",
+)
+_SHARE: Final = "a number from 0 to 1, the share of the time"
+DRIVES: Final = Format(
+    "table of drives",
+    "drive",
+    (
+        Column("participant", "text", wanted="the name of a participant"),
+        PHASE,
+        Column("system", "word", words=("A", "B"), needed=False),
+        Column("position", "whole", low=0.0, needed=False, blank=True),
+        Column("duration_s", unit="s", needed=False, blank=True),
+        Column("pedal_rate", low=0.0, high=1.0, wanted=_SHARE),
+        Column("set_speed_rate", low=0.0, high=1.0, wanted=_SHARE),
+        Column("combined_rate", low=0.0, high=1.0, wanted=_SHARE),
+        Column("interventions", "whole", low=0.0, needed=False, blank=True),
+        Column("wish_error_mps", unit="m/s", needed=False, blank=True),
+    ),
+    key=("participant", "phase"),
+)
+COLUMNS: Final = DRIVES.names
 
 
 @dataclass(frozen=True)

@@ -2,28 +2,58 @@
 
 from __future__ import annotations
 
-import csv
-import re
 from collections.abc import Sequence
-from math import nan
 from pathlib import Path
 from typing import Final
 
-from ..instance import ModelError
+from ..files.tables import Cell, Column, Format, read_table, table_csv
+from ..kernel.signals import Signal
 from .participants import DRIVER_SIGNALS, Participant
 from .phases import SEED_MAX
 
 _FIELDS: Final = {signal.name: field for field, signal in DRIVER_SIGNALS.items()}
-_ID: Final = re.compile(r"P\d{1,9}")
+
+
+def _column(signal: Signal) -> Column:
+    if signal.kind == "Boolean":
+        return Column(signal.name, "flag", needed=False)
+    return Column(
+        signal.name,
+        "number" if signal.kind == "Real" else "whole",
+        unit=signal.unit,
+        low=float(signal.low or 0),
+        high=float(signal.high or 0),
+        needed=False,
+    )
+
+
+PARTICIPANTS: Final = Format(
+    "list of participants",
+    "participant",
+    (
+        Column(
+            "participant",
+            "text",
+            pattern=r"P(00[1-9]|0[1-9]\d|[1-9]\d{2,8})",
+            wanted="P and a number, such as P001",
+            needed=False,
+        ),
+        Column("seed", "whole", low=0.0, high=float(SEED_MAX)),
+        *map(_column, DRIVER_SIGNALS.values()),
+    ),
+    closed=True,
+)
 
 
 def participants_csv(participants: Sequence[Participant]) -> bytes:
     """Return the file's content; every number reads back to the same bits."""
-    lines = [",".join(("participant", "seed", *_FIELDS))]
-    for one in participants:
-        values = (repr(one.value(field)) for field in _FIELDS.values())
-        lines.append(",".join((one.id, str(one.seed), *values)))
-    return ("\n".join(lines) + "\n").encode()
+    columns: dict[str, list[Cell]] = {
+        "participant": [one.id for one in participants],
+        "seed": [one.seed for one in participants],
+    }
+    for name, field in _FIELDS.items():
+        columns[name] = [one.value(field) for one in participants]
+    return table_csv(columns)
 
 
 def read_participants(path: Path) -> tuple[Participant, ...]:
@@ -33,70 +63,17 @@ def read_participants(path: Path) -> tuple[Participant, ...]:
     of the lines; parameters without a column keep the driver model's defaults.
 
     Raises:
-        ModelError: naming file, line and column of the first thing that cannot be used.
+        ModelError: naming file, line, column and value of what cannot be used.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "not a UTF-8 text file"
-        raise ModelError(f"{path}: cannot be read ({reason})") from error
-    lines = [
-        (number, line)
-        for number, line in enumerate(text.splitlines(), start=1)
-        if line.strip() and not line.startswith("#")
+    table = read_table(path, PARTICIPANTS)
+    ids = table.texts.get("participant") or [f"P{n + 1:03d}" for n in range(len(table))]
+    table.refuse(
+        table.fault(row, "participant", f"{ids[row]} occurs twice, first in line {line}")
+        for row, line in table.repeated(ids)
+    )
+    values = {_FIELDS[n]: column.tolist() for n, column in table.numbers.items() if n in _FIELDS}
+    participants = [
+        Participant(name, int(seed), {field: column[row] for field, column in values.items()})
+        for row, (name, seed) in enumerate(zip(ids, table.numbers["seed"], strict=True))
     ]
-    rows = list(zip((n for n, _ in lines), csv.reader(line for _, line in lines), strict=True))
-    if len(rows) < 2:
-        raise ModelError(f"{path}: no participants; a header and a line for each are needed")
-    header = [name.strip() for name in rows[0][1]]
-    _check_header(f"{path}, line {rows[0][0]}", header)
-    found: dict[str, Participant] = {}
-    for number, cells in rows[1:]:
-        where = f"{path}, line {number}"
-        if len(cells) != len(header):
-            raise ModelError(f"{where}: {len(cells)} values for {len(header)} columns")
-        one = _participant(where, dict(zip(header, cells, strict=True)), len(found) + 1)
-        if one.id in found:
-            raise ModelError(f"{where}, participant: {one.id} occurs twice")
-        found[one.id] = one
-    return tuple(sorted(found.values(), key=lambda one: one.number))
-
-
-def _check_header(where: str, header: list[str]) -> None:
-    if "seed" not in header:
-        raise ModelError(f"{where}: no column seed")
-    for name in header:
-        if name not in _FIELDS and name not in ("participant", "seed"):
-            raise ModelError(
-                f"{where}: unknown column {name!r}; known are participant, seed, "
-                f"{', '.join(_FIELDS)}"
-            )
-        if header.count(name) > 1:
-            raise ModelError(f"{where}: column {name} occurs twice")
-
-
-def _participant(where: str, row: dict[str, str], number: int) -> Participant:
-    name = row.pop("participant", f"P{number:03d}").strip()
-    if not _ID.fullmatch(name) or f"P{int(name[1:]):03d}" != name:
-        raise ModelError(f"{where}, participant: {name!r} is not P and a number, such as P001")
-    seed = _number(f"{where}, seed", row.pop("seed"), (0, SEED_MAX), whole=True)
-    values = {}
-    for column, text in row.items():
-        signal = DRIVER_SIGNALS[_FIELDS[column]]
-        flag = signal.kind == "Boolean"
-        allowed = (0.0, 1.0) if flag else (float(signal.low or 0), float(signal.high or 0))
-        whole = signal.kind != "Real"
-        values[signal.field] = _number(f"{where}, {column}", text, allowed, whole=whole)
-    return Participant(name, int(seed), values)
-
-
-def _number(where: str, text: str, allowed: tuple[float, float], whole: bool) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = nan
-    low, high = allowed
-    if not low <= value <= high or (whole and value != int(value)):
-        kind = "whole number" if whole else "number"
-        raise ModelError(f"{where}: {text.strip()!r} is not a {kind} from {low:g} to {high:g}")
-    return value
+    return tuple(sorted(participants, key=lambda one: one.number))

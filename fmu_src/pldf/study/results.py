@@ -22,6 +22,7 @@ from .. import __version__
 from ..compiled import digest
 from ..cosim.fmu import Fmu
 from ..files.disk import replace_file
+from ..files.tables import Cell, write_table
 from ..instance import Instance, ModelError
 from ..kernel.signals import signals_of
 from ..roads import fingerprint, route_arrays
@@ -95,12 +96,16 @@ class StudyResults:
     def merge(self) -> None:
         """Make the tables from all parts and take the parts away."""
         if not self.complete:
-            lines = [",".join(COLUMNS)]
-            for person in self.study.participants:
-                rows = json.loads((self.out / _PARTS / f"{person.id}.json").read_bytes())
-                lines += [",".join(_text(value) for value in row) for row in rows]
-            replace_file(self.out / DRIVES, ("\n".join(lines) + "\n").encode())
+            rows = [row for person in self.study.participants for row in self._part(person.id)]
+            columns = zip(*rows, strict=True)
+            write_table(self.out / DRIVES, dict(zip(COLUMNS, columns, strict=True)))
         shutil.rmtree(self.out / _PARTS, ignore_errors=True)
+
+    def _part(self, participant: str) -> list[list[Cell]]:
+        """Return the rows of one participant's drives."""
+        path = self.out / _PARTS / f"{participant}.json"
+        rows: list[list[Cell]] = json.loads(path.read_bytes())
+        return rows
 
     def _require_same(self) -> None:
         for name, content in self._identity.items():
@@ -119,10 +124,6 @@ class StudyResults:
             shutil.rmtree(self.out / name, ignore_errors=True)
         for name in (DRIVES, PARTICIPANTS, STUDY, VERSIONS):
             (self.out / name).unlink(missing_ok=True)
-
-
-def _text(value: Any) -> str:
-    return value if isinstance(value, str) else repr(value)
 
 
 def _versions(study: Study, fmus: Mapping[str, Fmu] | None) -> bytes:

@@ -1,0 +1,18 @@
+"""Tables: CSV files with a header line, declared by their columns; one reader, one writer."""
+
+from .declared import Column, Fault, Format, TableError
+from .reader import Table, parse_table, read_table
+from .writer import Cell, table_csv, write_table
+
+__all__ = (
+    "Cell",
+    "Column",
+    "Fault",
+    "Format",
+    "Table",
+    "TableError",
+    "parse_table",
+    "read_table",
+    "table_csv",
+    "write_table",
+)

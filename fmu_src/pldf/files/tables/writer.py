@@ -1,0 +1,68 @@
+"""The writer of all tables: UTF-8, LF, and numbers that read back to the same bits."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from ...instance import ModelError
+from ...kernel.arrays import FloatArray
+from ..disk import reason, replace_file
+
+Cell = str | float  # bool and int are among them
+
+_TO_QUOTE: Final = re.compile(r'[,"\r\n]|^#')
+
+
+def table_csv(
+    columns: Mapping[str, Sequence[Cell] | FloatArray], comments: Iterable[str] = ()
+) -> bytes:
+    """Return the content of a file with these columns of equal length.
+
+    Args:
+        columns: name -> cells: text as it is, flags as 0 and 1, numbers as short as they read back.
+        comments: lines to stand before the header, behind ``#``.
+    """
+    texts = (_texts(cells) for cells in columns.values())
+    lines = chain(
+        (f"# {' '.join(comment.splitlines())}" for comment in comments),
+        (",".join(map(_text, columns)),),
+        (",".join(row) or '""' for row in zip(*texts, strict=True)),
+    )
+    return ("\n".join(lines) + "\n").encode()
+
+
+def write_table(
+    path: str | os.PathLike[str],
+    columns: Mapping[str, Sequence[Cell] | FloatArray],
+    comments: Iterable[str] = (),
+) -> None:
+    """Write ``table_csv`` to ``path``, whole or not at all; ModelError if that fails."""
+    data, path = table_csv(columns, comments), Path(path)
+    try:
+        if path.exists() and not path.is_file():
+            path.write_bytes(data)  # a pipe or a device such as /dev/stdout is not replaced
+        else:
+            replace_file(path, data)
+    except OSError as error:
+        raise ModelError(f"{path}: cannot be written ({reason(error)})") from error
+
+
+def _texts(cells: Sequence[Cell] | FloatArray) -> Iterable[str]:
+    if isinstance(cells, np.ndarray):
+        return map(repr, cells.tolist())
+    return map(_text, cells)
+
+
+def _text(cell: Any) -> str:
+    if isinstance(cell, str):
+        return '"' + cell.replace('"', '""') + '"' if _TO_QUOTE.search(cell) else cell
+    if isinstance(cell, bool | np.bool_):
+        return "1" if cell else "0"
+    return repr(cell.item() if isinstance(cell, np.generic) else cell)

@@ -1,0 +1,298 @@
+"""Tables: what is written reads back, and every single thing that is wrong is found where it is."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as hs
+from pldf.files.tables import (
+    Column,
+    Format,
+    Table,
+    TableError,
+    parse_table,
+    read_table,
+    table_csv,
+    write_table,
+)
+from pldf.instance import ModelError
+
+PATH = Path("t.csv")
+MIXED = Format(
+    "mixture",
+    "thing",
+    (
+        Column("who", "text"),
+        Column("x_m", unit="m", low=-1e300, high=1e300),
+        Column("count", "whole", low=0.0, high=9.0),
+        Column("on", "flag"),
+        Column("mode", "word", words=("OFF", "ON")),
+        Column("maybe", needed=False, blank=True),
+    ),
+    key=("who",),
+)
+NUMBERS = Format("matrix", "row", (Column("a"), Column("b", "whole"), Column("c", "flag")))
+GOOD = "who,x_m,count,on,mode,maybe\nann,1.5,2,0,ON,\nben,-3,0,1,OFF,7\ncleo,0,9,1,ON,\n"
+
+
+def parse(text: str | bytes, form: Format = MIXED) -> Table:
+    return parse_table(text if isinstance(text, bytes) else text.encode(), PATH, form)
+
+
+def refusal(text: str | bytes, form: Format = MIXED) -> TableError:
+    with pytest.raises(TableError) as caught:
+        parse(text, form)
+    assert str(caught.value).count("\n") <= 1
+    return caught.value
+
+
+def same(one: Table, other: Table) -> None:
+    assert one.texts == other.texts
+    assert list(one.numbers) == list(other.numbers)
+    for name, values in one.numbers.items():
+        assert values.tobytes() == other.numbers[name].tobytes()
+
+
+def test_a_table_is_read_by_its_declaration() -> None:
+    table = parse("# first\n\n#second \n" + GOOD + "# last\n")
+    assert (len(table), table.header_line, table.lines) == (3, 4, [5, 6, 7])
+    assert table.comments == ("first", "second")
+    assert table.texts == {"who": ["ann", "ben", "cleo"]}
+    assert {name: values.tolist() for name, values in table.numbers.items() if name != "maybe"} == {
+        "x_m": [1.5, -3.0, 0.0],
+        "count": [2.0, 0.0, 9.0],
+        "on": [0.0, 1.0, 1.0],
+        "mode": [1.0, 0.0, 1.0],
+    }
+    np.testing.assert_array_equal(table.numbers["maybe"], [np.nan, 7.0, np.nan])
+    assert "maybe" in table
+    assert "other" not in table
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: "\ufeff" + text,
+        lambda text: text.replace("\n", "\r\n"),
+        lambda text: text.replace("\n", "\r"),
+        lambda text: text.removesuffix("\n"),
+        lambda text: text.replace("\n", "\n\n  \n"),
+        lambda text: text.replace("\n", "\n # no row\n"),
+        lambda text: text.replace(",", " ,\t"),
+        lambda text: text.replace("ON", '"ON"').replace("1.5", '"1.5"'),
+        lambda text: text.replace("who", '"who"').replace("ann", ' "ann"'),
+        lambda text: "\n".join(",".join(reversed(r.split(","))) for r in text.splitlines()),
+        lambda text: "\n".join(f"{row},further" for row in text.splitlines()),
+        lambda text: "\n".join(f'"{k}\n#",{r}' for k, r in enumerate(text.splitlines())),
+        lambda text: text.replace("1.5", "+1.50e0").replace("cleo,0", "cleo,0.0"),
+        lambda text: text.replace(",2,", ",2.0,"),
+    ],
+)
+def test_what_makes_no_difference(change: Callable[[str], str]) -> None:
+    assert change(GOOD) != GOOD
+    same(parse(GOOD), parse(change(GOOD)))
+
+
+def test_a_cell_may_hold_commas_quotes_hashes_and_line_breaks() -> None:
+    names = ['a,"b"', "#c", 'd\n# e\n\n"f', "g"]
+    data = table_csv({"who": names, "x_m": np.arange(4.0)})
+    table = parse(data, Format("list", "name", (Column("who", "text"), Column("x_m"))))
+    assert table.texts["who"] == names
+    assert table.lines == [2, 3, 4, 8]
+
+
+def test_rows_can_be_left_out_whatever_else_they_hold() -> None:
+    text = GOOD.replace("-3", "minus three").replace("cleo,0,9,1,ON,", "cleo")
+    table = parse_table(text.encode(), PATH, MIXED, {"who": {"ben", "cleo"}})
+    assert table.texts["who"] == ["ann"]
+
+
+@pytest.mark.parametrize(
+    ("form", "text", "told"),
+    [
+        (MIXED, "", "t.csv: no header; a mixture has the columns who,x_m,count,on,mode[,maybe]"),
+        (MIXED, "# c\n\n", "t.csv: no header"),
+        (MIXED, "who,x_m\n", "t.csv, line 1: missing column count, on, mode; a mixture has"),
+        (MIXED, "\nwho;x_m\n", "t.csv, line 2: missing column who, x_m, count, on, mode;"),
+        (NUMBERS, "a,b,c,a,b\n", "line 1: repeated column a, b; a matrix has the columns a,b,c"),
+        (NUMBERS, "#\n#\na,b,c\n\n", "t.csv: no rows below the header (line 3)"),
+        (NUMBERS, "a,b,c\n1,2,0,4\n5,6,0,8\n", "line 2: 4 values for 3 columns\n  also line 3"),
+        (NUMBERS, "a,b,c\n1,2,0\n\n5,6\n", "t.csv, line 4: 2 values for 3 columns"),
+        (NUMBERS, "a,b,c\n1,2,0 # why\n", "line 2, c: '0 # why' is not 0 or 1"),
+        (NUMBERS, "a,b,c\n1_000,2,0\n", "line 2, a: '1_000' is not a number"),
+        (NUMBERS, "a,b,c\n\u0661,2,0\n", "line 2, a: '\u0661' is not a number"),
+        (NUMBERS, "a,b,c\n1,2.5,0\n", "line 2, b: '2.5' is not a whole number"),
+        (NUMBERS, "a,b,c\n1,2,0.5\n", "line 2, c: '0.5' is not 0 or 1"),
+        (NUMBERS, "a,b,c\n1;5,2,0\n", "line 2, a: '1;5' is not a number"),
+        (NUMBERS, 'a,b,c\n1,"2,0\n3,4,1\n', "line 2: quotes that do not fit"),
+        (NUMBERS, 'a,b,c\n1,2,0\n1,"2"2,0\n', "line 3: quotes that do not fit"),
+        (MIXED, GOOD.replace("ON", "On", 1), "line 2, who ann, mode: 'On' is not one of OFF, ON"),
+        (MIXED, GOOD.replace("1.5", "9e300"), "who ann, x_m: '9e300' is not a number from -1e+300"),
+        (MIXED, GOOD.replace("1.5", "x" * 99), f"x_m: '{'x' * 40}' is not a number"),
+        (MIXED, GOOD.replace(",9,", ",10,"), "count: '10' is not a whole number from 0 to 9"),
+        (MIXED, GOOD.replace("ben", " "), "line 3, who: '' is not a text"),
+        (MIXED, GOOD.replace("7", "seven"), "line 3, who ben, maybe: 'seven' is not a number"),
+    ],
+)
+def test_what_is_wrong_is_told(form: Format, text: str, told: str) -> None:
+    assert told in str(refusal(text, form))
+
+
+def test_a_closed_format_refuses_other_columns() -> None:
+    form = Format("matrix", "row", NUMBERS.columns, closed=True)
+    assert "unknown column d; a matrix has" in str(refusal("a,b,c,d\n1,2,0,4\n", form))
+    assert "missing column c; unknown column d, e; a" in str(refusal("a,b,d,e\n1,2,0,1\n", form))
+
+
+def test_too_few_rows_are_refused() -> None:
+    form = Format("drive", "sample", (Column("a"),), rows_min=2)
+    told = "no samples below the header (line 1); at least 2 are needed"
+    assert str(refusal("a\n", form)).endswith(told)
+    assert "1 sample below" in str(refusal("a\n1\n", form))
+    assert len(parse("a\n1\n2\n", form)) == 2
+
+
+def test_text_in_another_encoding_is_refused_with_its_line() -> None:
+    assert "line 3: not UTF-8 text" in str(refusal(GOOD.replace("ben", "béné").encode("latin-1")))
+
+
+def test_a_range_open_to_one_side_is_told() -> None:
+    wanted = Column("a", low=0.0, unit="s").description, Column("a", high=9.0).description
+    assert wanted == ("a number of at least 0 in s", "a number of at most 9")
+
+
+def test_all_faults_are_found_at_once() -> None:
+    error = refusal("a,b,c\nx,2,0\n1,2\n1,y,2\n1,2,3\n" + "z,1,1\n" * 9, NUMBERS)
+    assert [fault.where for fault in error.faults[:5]] == [
+        "line 2, a", "line 3", "line 4, b", "line 4, c", "line 5, c",
+    ]  # fmt: skip
+    assert len(error.faults) == 14
+    assert str(error).splitlines() == [
+        "t.csv, line 2, a: 'x' is not a number",
+        "  also line 3; line 4, b; line 4, c; line 5, c; line 6, a; and 8 more",
+    ]
+
+
+def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match=r"none\.csv: cannot be read .No such .*check the path"):
+        read_table(tmp_path / "none.csv", NUMBERS)
+    with pytest.raises(ModelError, match="cannot be read"):
+        read_table(tmp_path, NUMBERS)
+
+
+texts = (
+    hs.text(hs.characters(exclude_categories=["Cs"], exclude_characters="\r"), min_size=1)
+    .map(str.strip)
+    .filter(bool)
+)
+cells = {
+    "who": texts,
+    "x_m": hs.floats(-1e300, 1e300),
+    "count": hs.integers(0, 9),
+    "on": hs.booleans(),
+    "mode": hs.sampled_from(["OFF", "ON"]),
+}
+
+
+@settings(deadline=None)
+@given(hs.lists(hs.tuples(*cells.values()), min_size=1, max_size=6))
+def test_what_is_written_reads_back_to_the_same_bits(rows: list[tuple]) -> None:
+    columns = dict(zip(cells, map(list, zip(*rows, strict=True)), strict=True))
+    data = table_csv(columns, ["made", "for a test"])
+    table = parse(data)
+    assert table.comments == ("made", "for a test")
+    assert table.texts["who"] == columns["who"]
+    codes = [float(word == "ON") for word in columns["mode"]]
+    for name, values in (columns | {"mode": codes}).items():
+        if name != "who":
+            assert table.numbers[name].tobytes() == np.array(values, dtype=np.float64).tobytes()
+    again = columns | table.numbers | {"mode": columns["mode"]}
+    same(parse(table_csv(again)), table)
+
+
+@settings(deadline=None)
+@given(
+    hs.lists(
+        hs.tuples(
+            hs.floats(allow_nan=False, allow_infinity=False),
+            hs.integers(-(2**53), 2**53),
+            hs.booleans(),
+        ),
+        min_size=1,
+    )
+)
+def test_numbers_alone_take_a_faster_way_to_the_same_bits(rows: list[tuple]) -> None:
+    a, b, c = (np.array(column, dtype=np.float64) for column in zip(*rows, strict=True))
+    data = table_csv({"a": a, "b": b, "c": c})
+    fast, slow = parse(data, NUMBERS), parse(data + b"# no row\n", NUMBERS)
+    same(fast, slow)
+    assert fast.lines == slow.lines
+    assert fast.numbers["a"].tobytes() == a.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("form", "text"), [(MIXED, GOOD), (NUMBERS, "a,b,c\n1,2,0\n3,4,1\n.5,6,1\n")]
+)
+@settings(deadline=None)
+@given(data=hs.data())
+def test_every_corruption_of_a_single_cell_is_found_where_it_is(
+    form: Format, text: str, data: hs.DataObject
+) -> None:
+    lines = [line.split(",") for line in text.splitlines()]
+    row = data.draw(hs.integers(1, len(lines) - 1))
+    at = data.draw(hs.integers(0, len(lines[0]) - 1))
+    column = form.columns[at]
+    bad = [""] if column.kind == "text" else ["x", "1 2", "0x1", "1'5", "nan", "-inf", "1_0"]
+    bad += [] if column.blank else ["", " "]
+    bad += ["2.5", "-0.5", "1e-9"] if column.kind in ("whole", "flag", "word") else []
+    lines[row][at] = data.draw(hs.sampled_from(bad))
+    lead = data.draw(hs.sampled_from(["", "# comment\n", "\n\n"]))
+    (fault,) = refusal(lead + "\n".join(map(",".join, lines)), form).faults
+    assert fault.line == row + 1 + lead.count("\n")
+    assert fault.place.split(", ")[-1] == column.name
+    assert fault.text == f"{lines[row][at].strip()!r} is not {column.description}"
+
+
+@pytest.mark.parametrize("head", [b"", b"a,b,c\n", b"who,x_m,count,on,mode\n"])
+@settings(deadline=None)
+@given(data=hs.binary(max_size=60))
+def test_any_bytes_are_read_or_refused(head: bytes, data: bytes) -> None:
+    for form in (MIXED, NUMBERS):
+        try:
+            table = parse(head + data, form)
+        except TableError as error:
+            assert error.faults
+        else:
+            assert all(len(values) == len(table) > 0 for values in table.numbers.values())
+
+
+def test_numbers_of_numpy_and_of_python_are_written_alike() -> None:
+    columns = {"a": [np.float64(0.1), 1, np.int64(2)], "b": [True, np.True_, False]}
+    assert table_csv(columns) == b"a,b\n0.1,1\n1,1\n2,0\n"
+
+
+def test_comments_stay_in_their_lines_and_an_empty_cell_is_a_row() -> None:
+    assert table_csv({"a": [""]}, ["x\r\ny"]) == b'# x y\na\n""\n'
+
+
+def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
+    path = tmp_path / "t.csv"
+    write_table(path, {"a": [1.5]})
+    assert path.read_bytes() == b"a\n1.5\n"
+    with pytest.raises(ValueError, match="argument 2 is shorter"):
+        write_table(path, {"a": [1.0, 2.0], "b": [1.0]})
+    assert path.read_bytes() == b"a\n1.5\n"
+    assert list(tmp_path.iterdir()) == [path]
+    with pytest.raises(ModelError, match=r"t\.csv: cannot be written .No such file"):
+        write_table(tmp_path / "nowhere" / "t.csv", {"a": [1.5]})
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="has no /dev")
+def test_a_device_is_written_to_and_not_replaced() -> None:
+    write_table("/dev/null", {"a": [1.5]})
+    assert Path("/dev/null").is_char_device()
