@@ -114,7 +114,10 @@ def test_phases_set_what_is_applied_learned_and_who_drives(drive: Run) -> None:
             ["--set", "learning.weight=1.5"],
             "AdaptivePLDF: parameter learning.weight = 1.5: it must",
         ),
-        (["--driver", "script", "--script", "nowhere.csv"], "cannot read the driver script"),
+        (
+            ["--driver", "script", "--script", "nowhere.csv"],
+            "nowhere.csv: cannot be read (No such file",
+        ),
         (["--route", "nowhere.xodr"], "nowhere.xodr: cannot be read"),
         (["--route", "12"], "route_id 12 is unknown; packed routes: 0 = study_road"),
         (["--fmus", "nowhere"], "pldf build"),
