@@ -43,7 +43,7 @@ class DriverTexts:
     route_file: str = text_parameter("Route, instead of the packed one of route_id")
 
 
-@dataclass(slots=True)
+@dataclass
 class WishParameters:
     """Which driver, on which route, with which hidden wish."""
 
@@ -81,8 +81,8 @@ class WishParameters:
     )
 
 
-@dataclass(slots=True)
-class DriverParameters(WishParameters):
+@dataclass
+class DriverParameters:
     """How the driver acts on the wish."""
 
     driver_threshold_mps: float = real_parameter(
@@ -140,9 +140,9 @@ class DriverParameters(WishParameters):
     )
 
 
-@dataclass(slots=True)
-class DriverPorts(DriverParameters):
-    """What the driver perceives and does."""
+@dataclass
+class DriverInputs:
+    """What the driver perceives."""
 
     vehicle_s_m: float = real_input(
         "Arc length along the route", "m", start=0.0, low=-1e7, high=1e7
@@ -164,6 +164,12 @@ class DriverPorts(DriverParameters):
         "Legal limit here, 0 = unknown (then the lever is not used)",
         "m/s", start=0.0, low=0.0, high=150.0,
     )  # fmt: skip
+
+
+@dataclass
+class DriverOutputs:
+    """What the driver does."""
+
     driver_gas_pedal: float = real_output("Gas pedal travel", "", low=0.0, high=1.0, held=True)
     driver_brake_pedal: float = real_output("Brake pedal travel", "", low=0.0, high=1.0, held=True)
     lever_resume: int = flag_output("Lever: activate or resume", held=True)
@@ -174,9 +180,9 @@ class DriverPorts(DriverParameters):
     lever_down_long: int = flag_output("Lever: set speed down, long tip", held=True)
 
 
-@dataclass(slots=True)
-class DriverState(DriverPorts):
-    """Everything of one driver but wish and script. Times are whole nanoseconds."""
+@dataclass
+class DriverMemory:
+    """What the driver remembers from step to step. Times are whole nanoseconds."""
 
     planner_accel_max_mps2: float = 0.0
     planner_accel_min_mps2: float = 0.0
@@ -197,3 +203,9 @@ class DriverState(DriverPorts):
     random: float = 1.0  # MINSTD, a whole number
     invalid_input: int = 0
     warned: int = 0
+
+
+# A dataclass takes the fields of its LAST base first; value references follow from their order.
+@dataclass(slots=True)
+class DriverState(DriverMemory, DriverOutputs, DriverInputs, DriverParameters, WishParameters):
+    """Everything of one driver but wish and script, in one flat record."""

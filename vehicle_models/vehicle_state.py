@@ -27,7 +27,7 @@ class VehicleTexts:
     route_file: str = text_parameter("Route for the grade, instead of the packed one of route_id")
 
 
-@dataclass(slots=True)
+@dataclass
 class VehicleParameters:
     """One car, its low-level control and where it starts."""
 
@@ -86,9 +86,9 @@ class VehicleParameters:
     )
 
 
-@dataclass(slots=True)
-class VehicleState(VehicleParameters):
-    """Everything of one vehicle but the grade per metre."""
+@dataclass
+class VehicleInputs:
+    """What driving function and driver ask for."""
 
     acceleration_request_mps2: float = real_input(
         "Acceleration requested by the driving function", "m/s2", start=0.0, low=-10.0, high=5.0
@@ -96,11 +96,22 @@ class VehicleState(VehicleParameters):
     driver_gas_pedal: float = real_input("Gas pedal travel", "", start=0.0, low=0.0, high=1.0)
     driver_brake_pedal: float = real_input("Brake pedal travel", "", start=0.0, low=0.0, high=1.0)
     function_active: int = flag_input("The request shall be followed", start=False)
+
+
+@dataclass
+class VehicleOutputs:
+    """How the car moves."""
+
     s_m: float = real_output("Position along the route", "m", held=True)
     speed_mps: float = real_output("Ego speed", "m/s", low=0.0, held=True)
     acceleration_mps2: float = real_output("Ego acceleration", "m/s2")
     jerk_mps3: float = real_output("Change of the acceleration per second", "m/s3")
-    # memory
+
+
+@dataclass
+class VehicleMemory:
+    """What the vehicle keeps from step to step."""
+
     inertia_kg: float = 0.0  # these four follow from the parameters
     mps2_per_n: float = 0.0
     drive_rate_per_s: float = 0.0
@@ -114,3 +125,9 @@ class VehicleState(VehicleParameters):
     brake: float = 0.0
     invalid_input: int = 0
     warned: int = 0
+
+
+# A dataclass takes the fields of its LAST base first; value references follow from their order.
+@dataclass(slots=True)
+class VehicleState(VehicleMemory, VehicleOutputs, VehicleInputs, VehicleParameters):
+    """Everything of one vehicle but the grade per metre, in one flat record."""

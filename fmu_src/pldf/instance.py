@@ -11,14 +11,13 @@ import json
 import struct
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
-from math import inf
 from typing import Any, Generic, Literal, TypeVar, cast
 
 import numpy as np
 
 from .errors import ModelError as ModelError  # noqa: PLC0414 - every model raises it
 from .kernel.arrays import FloatArray, Floats
-from .kernel.signals import Signal, signals_of
+from .kernel.signals import signals_of
 
 Arrays = tuple[FloatArray, ...]
 Level = Literal["info", "warning", "error"]
@@ -73,7 +72,7 @@ class Instance(Generic[RecordT]):
         """Raise ModelError for the first numeric parameter outside its declared range."""
         for signal in signals_of(self.record):
             value = getattr(self.record, signal.field)
-            low, high = _allowed(signal)
+            low, high = signal.range
             if signal.causality == "parameter" and not low <= value <= high:
                 raise ModelError(
                     f"parameter {signal.name} = {value}: it must lie between {low:g} and {high:g}"
@@ -143,17 +142,6 @@ def zeros(kind: Callable[..., TupleT], nodes: int) -> TupleT:
     """Return a named tuple of ``kind`` with an array of ``nodes`` zeros for each field."""
     names: tuple[str, ...] = cast(Any, kind)._fields
     return kind(*(np.zeros(nodes) for _ in names))
-
-
-def _allowed(signal: Signal) -> tuple[float, float]:
-    if signal.kind == "Boolean":
-        return 0, 1
-    if signal.enumeration is not None:
-        return 0, len(signal.enumeration.items) - 1
-    return (
-        -inf if signal.low is None else signal.low,
-        inf if signal.high is None else signal.high,
-    )
 
 
 _HEAD = struct.Struct("<32sqq")

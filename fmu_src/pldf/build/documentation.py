@@ -8,7 +8,6 @@ from inspect import cleandoc
 from string import Template
 from typing import Final
 
-from ..fmi.description import bounds
 from ..fmi.units import DISPLAY
 from ..kernel.signals import Signal
 
@@ -121,7 +120,7 @@ def _range(signal: Signal) -> str:
         return ", ".join(f"{code} {item}" for code, item in enumerate(signal.enumeration.items))
     if signal.low is None and signal.high is None:
         return ""
-    low, high = bounds(signal)
+    low, high = signal.range
     return f"{low:g} … {high:g}"
 
 

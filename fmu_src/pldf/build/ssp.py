@@ -15,7 +15,7 @@ from typing import Final
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from .. import __version__
-from ..fmi.description import bounds, literal
+from ..fmi.description import literal
 from ..fmi.units import base_unit
 from ..kernel.signals import Signal
 
@@ -152,7 +152,7 @@ def _require_portable(signal: Signal) -> None:
 
 
 def _require_allowed(signal: Signal, value: float | str) -> None:
-    low, high = (0.0, 1.0) if signal.kind == "Boolean" else bounds(signal)
+    low, high = signal.range
     if isinstance(value, str) or not low <= value <= high:
         raise ValueError(f"{signal.name} = {value!r} is not in {low:g} .. {high:g}")
     if signal.causality not in ("parameter", "input"):

@@ -12,7 +12,6 @@ import os
 import re
 from collections.abc import Mapping, Set
 from datetime import UTC, datetime
-from math import inf
 from typing import Final, NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
@@ -222,16 +221,7 @@ def check(signals: tuple[Signal, ...]) -> None:
 
 
 def _check_start(signal: Signal) -> None:
-    low, high = bounds(signal)
+    low, high = signal.range
     outside = not isinstance(signal.start, str) and not low <= signal.start <= high
     if outside and signal.causality in ("parameter", "input"):
         raise ValueError(f"{signal.name}: start {signal.start} is not in {low:g} .. {high:g}")
-
-
-def bounds(signal: Signal) -> tuple[float, float]:
-    """Return the declared range of a signal, infinite where none is declared."""
-    if signal.enumeration is not None:
-        return 0, len(signal.enumeration.items) - 1
-    low = -inf if signal.low is None else signal.low
-    high = inf if signal.high is None else signal.high
-    return low, high

@@ -1,6 +1,6 @@
 """Every number of the algorithm, each with its default and unit.
 
-The record is built up in a chain of classes, one per section of the algorithm.
+One class per section of the algorithm; ``state`` puts them into the flat record.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .signals import choice_parameter, count_parameter, flag_parameter, real_par
 from .units import MPS_PER_KMH
 
 
-@dataclass(slots=True)
+@dataclass
 class GeneralParameters:
     """Which route, which driver, which phase of a study."""
 
@@ -42,8 +42,8 @@ class GeneralParameters:
     main_switch: int = flag_parameter("Function switched on (else mode OFF)", start=True)
 
 
-@dataclass(slots=True)
-class PlannerParameters(GeneralParameters):
+@dataclass
+class PlannerParameters:
     """Base profile, section 1."""
 
     planner_lateral_accel_max_mps2: float = real_parameter(
@@ -61,8 +61,8 @@ class PlannerParameters(GeneralParameters):
     )
 
 
-@dataclass(slots=True)
-class ControlParameters(PlannerParameters):
+@dataclass
+class ControlParameters:
     """Modes, lever and tracking, section 2."""
 
     control_request_max_mps2: float = real_parameter(
@@ -124,8 +124,8 @@ class ControlParameters(PlannerParameters):
     )  # fmt: skip
 
 
-@dataclass(slots=True)
-class Parameters(ControlParameters):
+@dataclass
+class LearningParameters:
     """Interventions and learning, sections 2 to 4."""
 
     learning_pedal_gap_s: float = real_parameter(

@@ -3,9 +3,13 @@
 A model's record is a dataclass whose fields are made with the functions below. Its metadata is the
 single source of the Python field, the FMI variable, the recording column and the documentation::
 
-    @dataclass(slots=True)
-    class Ports:
+    @dataclass
+    class Inputs:
         vehicle_speed_mps: float = real_input("Ego speed", "m/s", start=0.0, low=0.0, high=100.0)
+
+    @dataclass(slots=True)
+    class State(Memory, Outputs, Inputs):  # a dataclass takes the fields of its LAST base first
+        ...
 
 The public name of a field that starts with one of ``GROUPS`` has a dot behind the group:
 ``vehicle_speed_mps`` is ``vehicle.speed_mps``. Every other field keeps its name; a field that only
@@ -15,6 +19,7 @@ looks grouped (``driver_id``) states its ``name``.
 from __future__ import annotations
 
 from dataclasses import Field, dataclass, field, fields
+from math import inf
 from typing import Any, Final, Literal, cast
 
 Causality = Literal["parameter", "input", "output", "local"]
@@ -64,6 +69,21 @@ class Signal:
     high: float | None = None
     enumeration: Enumeration | None = None
     held: bool = False
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Lowest and highest value allowed, both inclusive; infinite where none is declared.
+
+        A Boolean has 0 and 1, an enumeration the codes of its first and last item.
+        """
+        if self.kind == "Boolean":
+            return 0, 1
+        if self.enumeration is not None:
+            return 0, len(self.enumeration.items) - 1
+        return (
+            -inf if self.low is None else self.low,
+            inf if self.high is None else self.high,
+        )
 
 
 def signals_of(record: type[Any] | Any) -> tuple[Signal, ...]:

@@ -1,11 +1,20 @@
-"""The state of the driving function: parameters, inputs, outputs and memory in one flat record."""
+"""The state of the driving function: parameters, inputs, outputs and memory, and all in one record.
+
+The compiled kernels need a flat record: one number after the other, no records inside. So each
+section is a class of its own, all are bases of ``PldfState``, and it holds their fields in slots.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from .codes import MODE, PROFILE_STATUS, REASON
-from .parameters import Parameters
+from .parameters import (
+    ControlParameters,
+    GeneralParameters,
+    LearningParameters,
+    PlannerParameters,
+)
 from .signals import (
     choice_output,
     count_output,
@@ -16,8 +25,8 @@ from .signals import (
 )
 
 
-@dataclass(slots=True)
-class Inputs(Parameters):
+@dataclass
+class Inputs:
     """What the simulator delivers, constant over a communication step."""
 
     vehicle_s_m: float = real_input(
@@ -44,8 +53,8 @@ class Inputs(Parameters):
     eligible: int = flag_input("Learning is allowed here (free driving)", start=True)
 
 
-@dataclass(slots=True)
-class Outputs(Inputs):
+@dataclass
+class Outputs:
     """What the function tells vehicle, driver and researcher."""
 
     acceleration_request_mps2: float = real_output(
@@ -80,12 +89,9 @@ class Outputs(Inputs):
     hmi_learning: int = flag_output("This drive is being learned from")
 
 
-@dataclass(slots=True)
-class PldfState(Outputs):
-    """Everything of one instance but the per-metre arrays.
-
-    Below the signals: what the function remembers from step to step. Times are whole nanoseconds.
-    """
+@dataclass
+class Memory:
+    """What the function remembers from step to step. Times are whole nanoseconds."""
 
     time_ns: int = 0
     s_m: float = 0.0
@@ -126,3 +132,17 @@ class PldfState(Outputs):
     pedal_ns: int = 0
     set_speed_ns: int = 0
     combined_ns: int = 0
+
+
+# A dataclass takes the fields of its LAST base first; value references follow from their order.
+@dataclass(slots=True)
+class PldfState(
+    Memory,
+    Outputs,
+    Inputs,
+    LearningParameters,
+    ControlParameters,
+    PlannerParameters,
+    GeneralParameters,
+):
+    """Everything of one instance but the per-metre arrays."""

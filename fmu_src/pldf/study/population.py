@@ -17,7 +17,7 @@ from typing import Any, Final, Protocol
 
 import numpy as np
 
-from vehicle_models.driver_state import DriverParameters
+from vehicle_models.driver_state import DriverState
 
 from ..instance import ModelError
 from ..kernel.signals import signals_of
@@ -178,7 +178,7 @@ def values_at(quantiles: Sequence[float], distribution: Distribution) -> dict[st
 
 
 def _public_name(field: str) -> str:
-    return next(s.name for s in signals_of(DriverParameters) if s.field == field)
+    return next(s.name for s in signals_of(DriverState) if s.field == field)
 
 
 def _law_table(law: Law) -> dict[str, str | float]:

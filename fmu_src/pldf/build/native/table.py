@@ -7,7 +7,6 @@ from dataclasses import fields
 from math import inf
 from typing import Any, Final
 
-from ...fmi.description import bounds
 from ...kernel.arrays import NextArrays, ProfileArrays
 from ...kernel.signals import Signal, signals_of
 from .model import ENTRY_NAMES, NativeModel
@@ -72,7 +71,7 @@ def _variable(signal: Signal, model: NativeModel) -> Iterator[str]:
     yield _KINDS[signal.kind]
     yield signal.causality.upper()
     yield str([f.name for f in fields(record)].index(signal.field))
-    low, high = (0.0, 1.0) if signal.kind == "Boolean" else bounds(signal)
+    low, high = signal.range
     yield _number(low)
     yield _number(high)
 
