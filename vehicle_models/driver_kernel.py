@@ -10,6 +10,8 @@ from __future__ import annotations
 from math import floor
 
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE
+from pldf.kernel.interpolation import cell_at, value_at
+from pldf.kernel.substeps import substep_count
 
 from .driver_state import AWAY, HANDS_OFF, ON_BRAKE, ON_GAS, SCRIPT, WATCHING, DriverState
 from .pedal_kernel import brake_towards_wish, gas_towards_wish
@@ -24,9 +26,8 @@ from .script_kernel import (
     release_all,
     release_lever,
 )
-from .wish_kernel import WishArrays, wish_at
+from .wish_kernel import WishArrays
 
-INTERNAL_STEP_S = 0.01
 FINITE_MAX = 1e300
 # A contact of the lever is held this long; a series of tips has this rhythm.
 PRESS_NS = 200_000_000
@@ -57,7 +58,7 @@ def driver_start(st: DriverState) -> None:
 
 def driver_step(st: DriverState, wish: WishArrays, script: ScriptArrays, step_s: float) -> None:
     """Advance by ``step_s`` seconds in equal internal steps of at most 10 ms."""
-    count = max(1, floor(step_s / INTERNAL_STEP_S + 1.0 - 1e-6))
+    count = substep_count(step_s)
     begin_ns = st.time_ns
     end_ns = begin_ns + to_ns(step_s)
     for k in range(count):
@@ -190,8 +191,8 @@ def _urge(st: DriverState, wish: WishArrays) -> int:
     """
     speed = st.vehicle_speed_mps
     acceleration = st.vehicle_acceleration_mps2
-    here = wish_at(wish, st.vehicle_s_m)
-    there = wish_at(wish, st.vehicle_s_m + speed * st.driver_reaction_s)
+    here = value_at(wish.wish_mps, st.vehicle_s_m)
+    there = value_at(wish.wish_mps, st.vehicle_s_m + speed * st.driver_reaction_s)
     soon = speed + acceleration * st.driver_reaction_s
     aim = here - st.target_speed_mps
     if min(here - speed, there - soon) > st.driver_threshold_mps:
@@ -210,8 +211,7 @@ def _lever_will_do(st: DriverState, wish: WishArrays) -> bool:
     needed = 0.5 * st.driver_lever_step_mps if st.tipping != 0 else st.driver_threshold_mps
     if abs(_set_speed_error(st)) <= max(needed, 0.5 * st.driver_lever_step_mps):
         return False
-    last = len(wish.limit_end_m) - 1
-    i = int(max(0.0, min(st.vehicle_s_m, last)))
+    i = cell_at(len(wish.limit_end_m), st.vehicle_s_m)
     speed = st.vehicle_speed_mps
     plateau = st.limit_mps + st.wish_offset_mps
     return (

@@ -7,7 +7,7 @@ from typing import Any, Final
 from pldf.build.native.model import NativeModel, Watch
 from pldf.build.native.pointers import columns, record_at
 from pldf.cosim.prepared import SUFFIX, prepared_script
-from pldf.kernel import planner
+from pldf.kernel import interpolation, planner, substeps
 from pldf.kernel.arrays import RouteArrays, Work
 
 from . import driver_kernel, pedal_kernel, script_kernel, vehicle_kernel, wish_kernel
@@ -42,7 +42,7 @@ VEHICLE: Final = NativeModel(
     about="Longitudinal dynamics of one documented car with pedals",
     record=VehicleState,
     texts=VehicleTexts,
-    modules=(vehicle_kernel,),
+    modules=(interpolation, substeps, vehicle_kernel),
     entries={"start": _vehicle_start, "refresh": _vehicle_refresh, "step": _vehicle_step},
     groups=(RouteArrays,),
     kept=1,
@@ -76,7 +76,15 @@ DRIVER: Final = NativeModel(
     about="Driver that follows a script or a hidden wish",
     record=DriverState,
     texts=DriverTexts,
-    modules=(driver_kernel, pedal_kernel, script_kernel, wish_kernel, planner),
+    modules=(
+        driver_kernel,
+        pedal_kernel,
+        script_kernel,
+        wish_kernel,
+        interpolation,
+        substeps,
+        planner,
+    ),
     entries={"start": _driver_start, "step": _driver_step},
     groups=(WishArrays, RouteArrays, Work),
     kept=1,

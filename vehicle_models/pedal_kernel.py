@@ -6,8 +6,10 @@ wish's own acceleration), at a limited rate: the driver need not know the car. I
 
 from __future__ import annotations
 
+from pldf.kernel.interpolation import value_at
+
 from .driver_state import DriverState
-from .wish_kernel import SLOWEST_MPS, WishArrays, wish_acceleration, wish_at
+from .wish_kernel import SLOWEST_MPS, WishArrays, wish_acceleration
 
 # Where the foot first goes: beyond the travel at which a pedal counts as pressed.
 TOUCH = 0.05
@@ -21,7 +23,7 @@ LIFT_RATE_PER_S = 3.0
 
 def gas_towards_wish(st: DriverState, wish: WishArrays, step_s: float) -> bool:
     """Move the gas pedal; return True when the foot has left it."""
-    aim = wish_at(wish, st.vehicle_s_m) + st.driver_overshoot * st.driver_threshold_mps
+    aim = value_at(wish.wish_mps, st.vehicle_s_m) + st.driver_overshoot * st.driver_threshold_mps
     trend = wish_acceleration(wish, st.vehicle_s_m)
     error = aim - st.vehicle_speed_mps
     demand = trend + st.driver_speed_gain_per_s * error
@@ -35,7 +37,7 @@ def gas_towards_wish(st: DriverState, wish: WishArrays, step_s: float) -> bool:
 
 def brake_towards_wish(st: DriverState, wish: WishArrays, step_s: float) -> bool:
     """Move the brake pedal; return True when the foot has left it."""
-    wished = wish_at(wish, st.vehicle_s_m)
+    wished = value_at(wish.wish_mps, st.vehicle_s_m)
     aim = max(wished - st.driver_overshoot * st.driver_threshold_mps, min(wished, SLOWEST_MPS))
     trend = wish_acceleration(wish, st.vehicle_s_m)
     error = st.vehicle_speed_mps - aim

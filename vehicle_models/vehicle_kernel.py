@@ -10,13 +10,14 @@ step. In the numba subset (see ``pldf.kernel``).
 
 from __future__ import annotations
 
-from math import floor, sqrt
+from math import sqrt
 
 from pldf.kernel.arrays import Floats
+from pldf.kernel.interpolation import value_at
+from pldf.kernel.substeps import substep_count
 
 from .vehicle_state import VehicleState
 
-INTERNAL_STEPS_PER_S = 100.0
 GRAVITY_MPS2 = 9.81
 # The drive fades out over this last part of the speed range instead of being switched.
 CUT_OFF_GAIN_PER_S = 1.0
@@ -45,9 +46,8 @@ def vehicle_start(st: VehicleState, grade: Floats) -> None:
 
 def vehicle_step(st: VehicleState, grade: Floats, step_s: float) -> None:
     """Advance by ``step_s`` seconds in equal internal steps of at most 10 ms."""
-    # The margin keeps a communication step of 0.1 s plus rounding at 10 internal steps.
     read_inputs(st)
-    count = max(1, floor(step_s * INTERNAL_STEPS_PER_S + 1.0 - 1e-6))
+    count = substep_count(step_s)
     inner_s = step_s
     if count > 1:  # spares the usual step a division
         inner_s = step_s / count
@@ -176,7 +176,7 @@ def drive_force_max_n(st: VehicleState) -> float:
 
 def road_load_n(st: VehicleState, grade: Floats) -> float:
     """Rolling, grade and air resistance at the present position and speed."""
-    slope = grade_at(st, grade)
+    slope = st.grade_constant if st.grade_from_route == 0 else value_at(grade, st.s_m)
     weight = st.body_mass_kg * GRAVITY_MPS2 / sqrt(1.0 + slope * slope)
     drag = drag_n_per_v2(st) * st.speed_mps * st.speed_mps
     return weight * (st.body_rolling_coefficient + slope) + drag
@@ -185,19 +185,6 @@ def road_load_n(st: VehicleState, grade: Floats) -> float:
 def drag_n_per_v2(st: VehicleState) -> float:
     """Air resistance over squared speed."""
     return 0.5 * st.body_air_density_kgpm3 * st.body_drag_coefficient * st.body_frontal_area_m2
-
-
-def grade_at(st: VehicleState, grade: Floats) -> float:
-    """Grade at the present position, linear between the nodes, constant beyond both ends."""
-    if st.grade_from_route == 0:
-        return st.grade_constant
-    last = len(grade) - 1
-    if st.s_m <= 0.0:
-        return grade[0]
-    if st.s_m >= last:
-        return grade[last]
-    i = int(st.s_m)
-    return grade[i] + (grade[i + 1] - grade[i]) * (st.s_m - i)
 
 
 def lag_share(x: float) -> float:

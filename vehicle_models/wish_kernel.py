@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from pldf.kernel.arrays import Floats, RouteArrays, Work
-from pldf.kernel.planner import plan_profile, speed_caps
+from pldf.kernel.planner import find_limit_ends, plan_profile, speed_caps
 
 from .driver_state import DriverState
 
@@ -30,7 +30,7 @@ def prepare_wish(st: DriverState, route: RouteArrays, wish: WishArrays, work: Wo
     st.planner_accel_max_mps2 = st.wish_accel_max_mps2
     st.planner_accel_min_mps2 = st.wish_accel_min_mps2
     st.planner_jerk_max_mps3 = st.wish_jerk_max_mps3
-    _fill_limit_ends(route.limit_mps, wish.limit_end_m)
+    find_limit_ends(route.limit_mps, wish.limit_end_m)
     _fill_plateau(st, route.limit_mps, work.d)
     for i in range(len(work.c)):
         work.c[i] = 0.0
@@ -60,30 +60,12 @@ def _anticipate(st: DriverState, limit: Floats, plateau: Floats, sign: int) -> N
         i -= 1
 
 
-def _fill_limit_ends(limit: Floats, end: Floats) -> None:
-    last = len(limit) - 1
-    end[last] = last
-    for i in range(last - 1, -1, -1):
-        end[i] = end[i + 1] if limit[i] == limit[i + 1] else i + 1.0
-
-
 def _fill_straight_ends(st: DriverState, curvature: Floats, end: Floats) -> None:
     last = len(end) - 1
     end[last] = last
     for i in range(last - 1, -1, -1):
         straight = abs(curvature[i]) <= st.driver_lever_curvature_per_m
         end[i] = end[i + 1] if straight else i
-
-
-def wish_at(wish: WishArrays, s_m: float) -> float:
-    """Wished speed at ``s_m``, linear between the nodes, constant beyond both ends."""
-    last = len(wish.wish_mps) - 1
-    if s_m <= 0.0:
-        return wish.wish_mps[0]
-    if s_m >= last:
-        return wish.wish_mps[last]
-    i = int(s_m)
-    return wish.wish_mps[i] + (wish.wish_mps[i + 1] - wish.wish_mps[i]) * (s_m - i)
 
 
 def wish_acceleration(wish: WishArrays, s_m: float) -> float:

@@ -40,6 +40,7 @@ from .kernel import (
     replay,
     smoothing,
     stretch,
+    substeps,
     tracking,
 )
 
@@ -48,6 +49,7 @@ Namespace = dict[str, Callable[..., Any]]
 KERNEL_MODULES: tuple[ModuleType, ...] = (
     codes,
     interpolation,
+    substeps,
     planner,
     preparation,
     modes,

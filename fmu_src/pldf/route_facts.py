@@ -9,8 +9,8 @@ import numpy as np
 
 from .instance import view, views, zeros
 from .kernel.arrays import FloatArray, RouteArrays, Work
-from .kernel.parameters import PlannerParameters
-from .kernel.planner import plan_profile, speed_caps
+from .kernel.preparation import plan_legal
+from .kernel.state import PldfState
 from .kernel.units import KMH_PER_MPS
 from .roads import Route, route_arrays
 
@@ -48,26 +48,23 @@ class RouteFacts:
 def route_facts(route: Route) -> RouteFacts:
     """Plan the base profile of ``route`` and find its binding curves."""
     arrays = route_arrays(route)
-    settings = PlannerParameters()
+    defaults = PldfState()
     curvature = np.asarray(arrays.curvature_per_m)
     with np.errstate(divide="ignore"):
-        curve_speed = np.sqrt(settings.planner_lateral_accel_max_mps2 / curvature)
+        curve_speed = np.sqrt(defaults.planner_lateral_accel_max_mps2 / curvature)
     return RouteFacts(
         route=route,
         arrays=arrays,
         curve_speed_mps=curve_speed,
-        base_mps=_base_profile(arrays, settings),
+        base_mps=_base_profile(arrays, defaults),
         curves=_curves(curve_speed, arrays),
         limits=_limits(route),
     )
 
 
-def _base_profile(arrays: RouteArrays, settings: PlannerParameters) -> FloatArray:
-    speed, no_offset = np.zeros(len(arrays.limit_mps)), np.zeros(len(arrays.limit_mps))
-    lateral = settings.planner_lateral_accel_max_mps2
-    road = views(arrays)
-    speed_caps(view(speed), road.limit_mps, view(no_offset), road.curvature_per_m, lateral)
-    plan_profile(settings, view(speed), view(speed), views(zeros(Work, len(speed))))
+def _base_profile(arrays: RouteArrays, settings: PldfState) -> FloatArray:
+    speed = np.zeros(len(arrays.limit_mps))
+    plan_legal(settings, views(arrays), view(speed), views(zeros(Work, len(speed))))
     return speed
 
 

@@ -39,7 +39,7 @@ def checked() -> Iterator[Namespace]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(compiled.OPTIONS, "boundscheck", True)
         function = compile_modules(compiled.KERNEL_MODULES)
-        vehicle = compile_modules((vehicle_kernel,))
+        vehicle = compile_modules((vehicle_kernel,), function)
         yield {**function, **vehicle, **compile_modules(DRIVER_MODULES, function)}
 
 

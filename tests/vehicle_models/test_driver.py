@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pldf.compiled import compile_modules, pack, unpack
 from pldf.function import DrivingFunction
 from pldf.instance import ModelError, zeros
-from pldf.kernel import planner
+from pldf.kernel import interpolation, planner, substeps
 from pldf.kernel.arrays import RouteArrays, Work
 from pldf.kernel.codes import ACTIVE, FAULT, GAS_OVERRIDE, LEARN_FAITHFUL, OFF, STANDBY
 
@@ -29,6 +29,9 @@ from vehicle_models.vehicle import LongitudinalVehicle
 from vehicle_models.wish_kernel import WishArrays, prepare_wish
 
 STEP_S = 0.01
+MODULES = (
+    interpolation, substeps, planner, wish_kernel, script_kernel, pedal_kernel, driver_kernel,
+)  # fmt: skip
 KMH = 1.0 / 3.6
 LEVER = (
     "lever_resume",
@@ -501,7 +504,7 @@ def test_state_is_saved_and_restored_to_the_bit(tmp_path: Path) -> None:
 
 
 def test_compiled_kernel_equals_cpython_to_the_bit() -> None:
-    compiled = compile_modules([planner, wish_kernel, script_kernel, pedal_kernel, driver_kernel])
+    compiled = compile_modules(MODULES)
     plain = default_drive().driver
     fresh = driver(driver_spread=0.3)
     wish = WishArrays(*(np.zeros_like(a) for a in fresh.arrays[:3]))
@@ -534,7 +537,7 @@ def test_compiled_kernel_equals_cpython_to_the_bit() -> None:
 
 
 def test_compiled_script_equals_cpython_to_the_bit() -> None:
-    compiled = compile_modules([planner, wish_kernel, script_kernel, pedal_kernel, driver_kernel])
+    compiled = compile_modules(MODULES)
     someone = driver(kind=1)
     packed, twin = pack(someone.record), replace(someone.record)
     wish = WishArrays(*(np.array(a) for a in someone.arrays[:3]))

@@ -12,6 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pldf.compiled import compile_modules, pack, unpack
 from pldf.instance import ModelError
+from pldf.kernel import interpolation, substeps
+from pldf.kernel.interpolation import value_at
 
 from vehicle_models import vehicle_kernel
 from vehicle_models.vehicle import LongitudinalVehicle
@@ -266,7 +268,7 @@ def test_grade_comes_from_the_route(tmp_path: Path) -> None:
     vehicle.texts.route_file = str(route_file(tmp_path))
     vehicle.record.start_s_m = 150.0
     vehicle.initialize()
-    assert vehicle_kernel.grade_at(vehicle.record, vehicle.arrays[0]) == pytest.approx(0.05)
+    assert value_at(vehicle.arrays[0], 150.0) == pytest.approx(0.05)
     run(vehicle, 10.0)
     uphill = vehicle.record.speed_mps
     flat = car()
@@ -293,7 +295,7 @@ def test_state_is_saved_and_restored_to_the_bit() -> None:
 
 
 def test_compiled_kernel_equals_cpython_to_the_bit() -> None:
-    compiled = compile_modules([vehicle_kernel])
+    compiled = compile_modules([interpolation, substeps, vehicle_kernel])
     grade = np.linspace(-0.05, 0.05, 400)
     vehicle = car(body_coast_decel_mps2=0.8)
     vehicle.record.grade_from_route = 1

@@ -44,14 +44,6 @@ def find_turns(speed: Floats, turn_m: Floats) -> None:
         after = phase
 
 
-def find_limit_ends(limit: Floats, limit_end_m: Floats) -> None:
-    """Fill ``limit_end_m``: where the legal limit of each cell ends, at last the route's end."""
-    n = len(limit)
-    limit_end_m[n - 1] = n - 1.0
-    for i in range(n - 2, -1, -1):
-        limit_end_m[i] = limit_end_m[i + 1] if limit[i] == limit[i + 1] else i + 1.0
-
-
 def reason(st: PldfState, route: RouteArrays, profile: ProfileArrays, place: Place) -> int:
     """Return the code of the reason for the present speed."""
     if st.mode == FAULT:

@@ -11,11 +11,11 @@ Place = tuple[int, int, float]
 
 def place_at(n: int, s_m: float) -> Place:
     """Return the place of position ``s_m`` on a route of ``n`` nodes."""
+    if s_m >= n - 1:  # first, because a machine integer does not hold every position
+        return n - 1, n - 1, 0.0
     i = int(s_m)
     if s_m <= 0.0 or i < 0:  # the second says to the compiler that no index is negative
         return 0, 0, 0.0
-    if i >= n - 1:
-        return n - 1, n - 1, 0.0
     return i, i + 1, s_m - i
 
 

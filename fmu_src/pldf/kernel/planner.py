@@ -57,6 +57,14 @@ def speed_caps(
         before = here
 
 
+def find_limit_ends(limit: Floats, limit_end_m: Floats) -> None:
+    """Fill ``limit_end_m``: where the legal limit of each cell ends, at last the route's end."""
+    n = len(limit)
+    limit_end_m[n - 1] = n - 1.0
+    for i in range(n - 2, -1, -1):
+        limit_end_m[i] = limit_end_m[i + 1] if limit[i] == limit[i + 1] else i + 1.0
+
+
 def plan_profile(st: PlannerSettings, caps: Floats, speed: Floats, work: Work) -> None:
     """Fill ``speed`` (m/s, per node) with the fastest profile under ``caps`` (m/s, per node).
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from .arrays import Floats, ProfileArrays, RouteArrays, Work
 from .bounds import enforce_bounds
 from .codes import OFF, STANDBY
-from .hmi import find_limit_ends, find_turns
-from .planner import plan_profile, speed_caps
+from .hmi import find_turns
+from .planner import find_limit_ends, plan_profile, speed_caps
 from .state import PldfState
 
 
@@ -18,9 +18,8 @@ def start_drive(st: PldfState, route: RouteArrays, profile: ProfileArrays, work:
 
 def plan_base(st: PldfState, route: RouteArrays, profile: ProfileArrays, work: Work) -> None:
     """Fill base and open profile, and make the base profile the one to follow."""
-    fill(work.c, 0.0)
+    plan_legal(st, route, profile.base_mps, work)
     fill(work.d, st.control_set_speed_max_mps)
-    plan(st, (route.limit_mps, work.c, route.curvature_per_m), profile.base_mps, work)
     fill(work.c, 0.0)
     plan(st, (work.d, work.c, route.curvature_per_m), profile.open_mps, work)
     for i in range(len(profile.base_mps)):
@@ -28,6 +27,12 @@ def plan_base(st: PldfState, route: RouteArrays, profile: ProfileArrays, work: W
         profile.learned_mps[i] = profile.base_mps[i]
     find_limit_ends(route.limit_mps, profile.limit_end_m)
     find_turns(profile.learned_mps, profile.turn_m)
+
+
+def plan_legal(st: PldfState, route: RouteArrays, speed: Floats, work: Work) -> None:
+    """Fill ``speed`` with the base profile: planned from legal limits and curvature alone."""
+    fill(work.c, 0.0)
+    plan(st, (route.limit_mps, work.c, route.curvature_per_m), speed, work)
 
 
 def adopt_learned(st: PldfState, route: RouteArrays, profile: ProfileArrays, work: Work) -> None:

@@ -14,6 +14,7 @@ from .codes import ACTIVE, FAULT, GAS_OVERRIDE, INPUT_INVALID
 from .interpolation import Place, place_at, value_of
 from .lever import automatic_set_speed
 from .state import PldfState
+from .substeps import substep_count
 
 
 def target_speed(st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m: float) -> float:
@@ -48,7 +49,7 @@ def update_request(
     st: PldfState, route: RouteArrays, profile: ProfileArrays, step_s: float
 ) -> None:
     """Move the request over one communication step, in equal internal steps of at most 10 ms."""
-    substeps = max(int(step_s / 0.010 + 0.999999), 1)
+    substeps = substep_count(step_s)
     change = st.control_request_jerk_max_mps3 * step_s / substeps
     for k in range(substeps):
         wanted = _wanted(st, route, profile, step_s * k / substeps)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -113,8 +114,11 @@ def _first(bad: NDArray[np.bool_], text: str) -> tuple[int, str] | None:
     return (index, text) if bad[index] else None
 
 
+@lru_cache(maxsize=8)  # a start asks three times: fingerprint, driving function, vehicle or driver
 def route_arrays(route: Route) -> RouteArrays:
     """Return what the kernel needs per metre: float64 arrays of ``route.nodes`` values.
+
+    Who asks for the same route gets the same arrays; nobody writes to them.
 
     A cell's limit is the lowest in force anywhere in it, its curvature the largest absolute value
     in it. A sign or a jump exactly at node i + 1 belongs to cell i + 1 alone.

@@ -74,7 +74,7 @@ def prepared(settings: StudySettings) -> Simulation:
 def machine_code() -> Namespace:
     """Return the compiled functions of kernel, driver and loop by name."""
     function = kernel()
-    vehicle = compile_modules((vehicle_kernel,))
+    vehicle = compile_modules((vehicle_kernel,), function)
     driver = compile_modules(DRIVER_MODULES, function)
     called = {**function, **vehicle, **driver}
     return {**called, **compile_modules((loop,), called)}
