@@ -260,3 +260,12 @@ def test_the_command_writes_tables_and_tells_the_paper_s_numbers(
     assert len((tmp_path / "analysis" / "phases.csv").read_text().splitlines()) == 19
     assert main(["analyse", str(tmp_path / "none")]) == 1
     assert "no drives.csv" in capsys.readouterr().err
+
+
+def test_an_interval_of_rates_ends_at_0_and_1(tmp_path: Path) -> None:
+    rates = [0.0, 0.0, 1.0, 1.0]
+    half = stats.t.ppf(0.975, 3) * np.std(rates, ddof=1) / 2.0  # of the mean of four
+    assert 0.5 - half < 0.0
+    rows = [(f"P{at}", phase, (x, x, x)) for at, x in enumerate(rates) for phase in PHASES]
+    interval = analyse(study(tmp_path, drives(rows))).interval("A1", "pedal")
+    assert (interval.value, interval.low, interval.high) == (0.5, 0.0, 1.0)

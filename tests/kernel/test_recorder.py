@@ -253,3 +253,13 @@ def test_a_second_drive_starts_with_an_empty_memory() -> None:
     assert made.record.drive_interventions == 0
     assert made.record.nodes == 0
     assert not np.any(made.trace.speed_mps)
+
+
+def test_a_car_that_drives_over_the_end_is_recorded_up_to_the_last_node() -> None:
+    made = function(road(100.0))
+    s_m = np.arange(0.5, 103.0, 2.0)
+    gas = s_m > 90.0
+    play(made, s_m, 25.0, mode=np.where(gas, GAS_OVERRIDE, ACTIVE))
+    st = made.record
+    assert (st.first_node, st.first_node + st.nodes) == (0 if s_m[0] == 0.0 else 1, 101)
+    assert spans(made) == [(90.5, s_m[-1])]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import sqrt
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,6 +11,7 @@ from hypothesis import strategies as hs
 from laboratory import KMH, PointMass, driving, function, road
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE, STANDBY
 from pldf.kernel.interpolation import value_at
+from pldf.kernel.substeps import substep_count
 from pldf.kernel.tracking import target_speed
 from pldf.roads import packed_route
 
@@ -164,3 +167,28 @@ def test_a_raised_set_speed_never_makes_the_car_slower_than_its_profile() -> Non
     made.record.manual_set_mps = 105.0 / 3.6
     made.record.manual_end_m = 2000.0
     assert target_speed(made.record, made.route, made.profile, 500.0) == 115.0 / 3.6
+
+
+@given(hs.floats(1e-9, 60.0))
+def test_substeps_are_as_few_as_10_ms_allow(step_s: float) -> None:
+    count = substep_count(step_s)
+    assert step_s / count <= 0.01 * (1.0 + 1e-6)
+    assert count == 1 or step_s / (count - 1) > 0.01
+
+
+@pytest.mark.parametrize(("step_s", "count"), [(0.004, 1), (0.01, 1), (0.015, 2), (0.1, 10)])
+def test_substeps_of_usual_steps(step_s: float, count: int) -> None:
+    assert substep_count(step_s) == count
+    assert substep_count(step_s * (1.0 + 1e-12)) == count  # steps are differences of times
+
+
+def test_a_raised_set_speed_approaches_the_learned_speed_behind_the_sign() -> None:
+    car = driving(road(2000.0, ((0.0, 30.0), (1000.0, 20.0))))
+    np.asarray(car.made.profile.learned_mps)[1000:] = 25.0
+    car.s_m, car.speed_mps = 900.0, 30.0
+    car.made.record.vehicle_s_m = car.s_m
+    car.tip("lever_up_long")
+    car.run(1.0)
+    assert car.made.record.manual_set_mps > 30.0
+    speed = target_speed(car.made.record, car.made.route, car.made.profile, 990.0)
+    assert speed == pytest.approx(sqrt(25.0**2 + 2.0 * 1.0 * 10.0))  # 1.0 m/s2 over 10 m

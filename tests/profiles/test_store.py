@@ -283,6 +283,21 @@ def test_a_history_of_equal_length_but_other_content_is_a_conflict(tmp_path: Pat
         profiles.append(loaded, drive_result(loaded))
 
 
+@pytest.mark.parametrize("array", ["learned_mps", "offset_mps", "drive", "intervention"])
+def test_a_history_that_differs_in_one_number_is_a_conflict(tmp_path: Path, array: str) -> None:
+    profiles = saved_store(tmp_path, 2)
+    loaded = load(profiles)
+    first = loaded.iterations[0]
+    values = getattr(first, array).copy()
+    values[-1] += 1.0
+    changed = replace(
+        loaded, iterations=(replace(first, **{array: values}), *loaded.iterations[1:])
+    )
+    with pytest.raises(ProfileConflict):
+        profiles.append(changed, drive_result(changed))
+    profiles.append(loaded, drive_result(loaded))
+
+
 def test_two_processes_lose_no_drive(tmp_path: Path) -> None:
     drives = 25
     with worker("append", tmp_path, "a", drives) as a, worker("append", tmp_path, "b", drives) as b:
