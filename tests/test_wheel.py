@@ -9,6 +9,8 @@ import sys
 import venv
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[1]
 SOURCES = ("pyproject.toml", "README.md", "LICENSE", "CITATION.cff", "fmu_src", "vehicle_models")
 
@@ -63,9 +65,23 @@ def install(wheel: Path, folder: Path) -> Path:
     return python
 
 
-def test_the_wheel_works_alone(tmp_path: Path) -> None:
-    python = install(build_wheel(tmp_path), tmp_path / "venv")
-    tests = shutil.copytree(ROOT / "tests" / "wheel", tmp_path / "tests")
-    run(
-        python, "-m", "pytest", "-p", "no:cacheprovider", "-q", "--durations=5", tests, folder=tests
-    )
+@pytest.fixture(scope="module")
+def python(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the interpreter of an environment with the wheel."""
+    folder = tmp_path_factory.mktemp("wheel")
+    return install(build_wheel(folder), folder / "venv")
+
+
+def run_tests(python: Path, name: str, folder: Path) -> None:
+    """Run a file of ``tests/wheel`` in a folder of its own."""
+    file = shutil.copy(ROOT / "tests" / "wheel" / name, folder)
+    options = ("-p", "no:cacheprovider", "-n", 2, "--durations", 5)
+    run(python, "-m", "pytest", *options, file, folder=folder)
+
+
+def test_the_wheel_works_alone(python: Path, tmp_path: Path) -> None:
+    run_tests(python, "test_alone.py", tmp_path)
+
+
+def test_type_checkers_know_the_wheel(python: Path, tmp_path: Path) -> None:
+    run_tests(python, "test_types.py", tmp_path)

@@ -139,20 +139,3 @@ def test_the_api_works(empty: Path) -> None:
     learned = pldf.learn(driven.recording, route)
     (kept,) = Path("profiles").glob("*.pldf")
     assert pldf.read_profile(kept).iterations[0].note == learned.iteration.note
-
-
-def test_type_checkers_know_the_api(empty: Path) -> None:
-    pytest.importorskip("mypy")
-    Path("use.py").write_text(
-        "import pldf\n"
-        "reveal_type(pldf.base_profile(pldf.open_route('study')))\n"
-        "pldf.drive(phase=3)\n"
-        "pldf.steer()\n",
-        encoding="utf-8",
-    )
-    said = run(sys.executable, "-m", "mypy", "--strict", "use.py").stdout
-    assert 'Revealed type is "numpy.ndarray[' in said
-    assert "float64" in said or "floating" in said
-    assert 'Argument "phase" to "drive" has incompatible type "int"' in said
-    assert 'Module has no attribute "steer"' in said
-    assert "Found 2 errors" in said
