@@ -20,6 +20,7 @@ from typing import Final
 import numpy as np
 from pldf.analysis.long_run import read_long_run
 from pldf.analysis.statistics import mean_interval
+from pldf.files.tables import write_table
 from pldf.kernel.units import KMH_PER_MPS
 from pldf.report import figures, paper
 from pldf.roads import open_road
@@ -96,10 +97,9 @@ def main() -> int:
 def write(summaries: Sequence[Summary], folder: Path) -> None:
     """Write CSV and figure."""
     folder.mkdir(parents=True, exist_ok=True)
-    lines = [",".join(summaries[0])]
-    lines += [",".join(f"{value:.6g}" for value in row.values()) for row in summaries]
     table = folder / "long_run.csv"
-    table.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    columns = {name: [f"{row[name]:.6g}" for row in summaries] for name in summaries[0]}
+    write_table(table, columns)
     paper.save(figures.long_run(read_long_run(table)), folder / "long_run.png")
 
 

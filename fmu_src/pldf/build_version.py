@@ -15,13 +15,15 @@ from typing import Final
 from . import __version__
 
 _DIGITS: Final = 12
-# Kernels, roads, and what starts the kernels with parameters and stored profiles. FMI, files and
-# study only carry values to and fro; what compiles the kernels must not change a bit.
+# Kernels, roads, the tables that roads and scripts are read from, and what starts the kernels with
+# parameters and stored profiles. FMI, other files and study only carry values to and fro; what
+# compiles the kernels must not change a bit.
 _DECIDING: Final = {
     "pldf": (
         "kernel/*.py",
         "roads/*.py",
         "roads/data/*",
+        "files/tables/*.py",
         "function.py",
         "instance.py",
         "profiles/stored_profile.py",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from pldf.function import DrivingFunction
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE, STANDBY
 from pldf.kernel.replay import Samples, replay
+from pldf.kernel.signals import signals_of
 from pldf.profiles.stored_profile import Iteration, StoredProfile
 from pldf.roads import Route, fingerprint
 
@@ -171,3 +173,12 @@ def driving(route: Route, speed_mps: float = 20.0, **settings: Any) -> PointMass
     car.tip("lever_resume")
     assert car.made.record.mode == ACTIVE
     return car
+
+
+def assert_sound(made: DrivingFunction) -> None:
+    """Every output and every recorded or stored number is finite."""
+    for signal in signals_of(made.record):
+        if signal.causality == "output":
+            assert isfinite(getattr(made.record, signal.field)), signal.name
+    for array in made.arrays:
+        assert np.all(np.isfinite(array))

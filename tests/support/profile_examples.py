@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zlib
+
 import numpy as np
 from pldf.profiles.store import Iteration, StoredProfile
 
@@ -35,3 +37,8 @@ def learned_profile(iterations: int = 2, nodes: int = 11) -> StoredProfile:
     for seed in range(iterations):
         profile = profile.with_iteration(drive_result(profile, f"drive {seed + 1}", seed))
     return profile
+
+
+def sealed(body: bytes) -> bytes:
+    """Return a file's ``body`` with its checksum."""
+    return body + f"crc32 {zlib.crc32(body):08x}\n".encode()

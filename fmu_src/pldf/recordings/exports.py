@@ -15,23 +15,9 @@ import numpy as np
 
 from ..instance import ModelError
 from ..kernel.codes import MODE
-from .recording import COLUMNS, Recording
+from .recording import COLUMNS, RECORDING, Recording
 
-UNITS: Final = {
-    "time_s": "s",
-    "s_m": "m",
-    "speed_mps": "m/s",
-    "acceleration_mps2": "m/s2",
-    "mode": "",
-    "gas_pedal": "1",
-    "brake_pedal": "1",
-    "set_speed_mps": "m/s",
-    "set_speed_offset_mps": "m/s",
-    "profile_mps": "m/s",
-    "base_mps": "m/s",
-    "limit_mps": "m/s",
-    "eligible": "",
-}
+UNITS: Final = {column.name: column.unit for column in RECORDING.columns}
 
 
 def write_parquet(path: Path, recording: Recording) -> None:

@@ -22,7 +22,7 @@ class Column:
     Attributes:
         name: as in the header, with its SI unit: ``speed_mps``.
         kind: number (finite), whole number, flag (0 or 1), word (one of ``words``) or text.
-        unit: of the numbers, such as m/s; empty for a pure number.
+        unit: of the numbers, such as m/s; 1 for a pure number, empty if that says nothing.
         low: smallest number allowed.
         high: largest number allowed.
         words: allowed words; a word is read as its place among them, from 0.
@@ -53,7 +53,8 @@ class Column:
         if self.kind == "flag":
             return "0 or 1"
         whole = "whole " if self.kind == "whole" else ""
-        return f"a {whole}number{self._range}" + (f" in {self.unit}" if self.unit else "")
+        unit = f" in {self.unit}" if self.unit not in ("", "1") else ""
+        return f"a {whole}number{self._range}{unit}"
 
     @property
     def _range(self) -> str:

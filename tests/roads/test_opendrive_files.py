@@ -1,0 +1,78 @@
+"""OpenDRIVE: what is said about files as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from opendrive_text import SHAPES, geometry, road, straight
+from pldf.instance import ModelError
+from pldf.roads import Route, read_route
+
+Reader = Callable[..., Route]
+
+
+@pytest.mark.parametrize(
+    "before", ["\ufeff", "<!-- <OpenDRIVE> by hand -->\n", "exported\n\n", "\n"]
+)
+def test_text_before_the_xml_is_skipped_and_lines_still_count(read: Reader, before: str) -> None:
+    assert read(straight("1"), before=before).length_m == 100.0
+    with pytest.raises(ModelError, match=f"line {3 + before.count(chr(10))}, road 1: no planView"):
+        read(road("1", ""), before=before)
+
+
+def test_the_name_comes_from_the_header_else_from_the_file(read: Reader) -> None:
+    assert read('<header name=" B 85 "/>', straight("1")).name == "B 85"
+    assert read(straight("1")).name == "town"
+
+
+def test_a_prefix_or_default_namespace_does_not_matter(tmp_path: Path) -> None:
+    path = tmp_path / "ns.xodr"
+    path.write_text(f'<OpenDRIVE xmlns="http://code.asam.net/x">{straight("1")}</OpenDRIVE>')
+    assert read_route(path).length_m == 100.0
+
+
+@pytest.mark.parametrize(
+    ("roads", "message"),
+    [
+        ("", "line 2: no <road> in this file"),
+        ("<road", "not well-formed XML"),
+        (road("1", geometry(0, 100), length=0), "line 3, road 1: length 0 m"),
+        (road("1", geometry(0, 1e18), length=1e18), "line 3, road 1: length 1e.18 m is beyond"),
+        (road("1", ""), "road 1: no planView/geometry"),
+        (road("1", geometry(0, 100, "<circle/>")), "road 1: no line, arc, spiral"),
+        (
+            road("1", geometry(0, 100, '<arc curvature="nan"/>')),
+            "line 7, road 1: <arc> attribute curvature = 'nan' is not a finite number",
+        ),
+        (road("1", geometry(0, 100, "<arc/>")), "<arc> attribute curvature is missing"),
+        (road("1", geometry(0, 100, '<arc curvature="3"/>')), "tighter than 1 m"),
+        (road("1", geometry(0, 1), length=1), "the route is 1 m long"),
+        (
+            road("1", geometry(0, 100, SHAPES["normalized"].replace("normalized", "arcLength"))),
+            "line 7, road 1: the polynomial is .* check length and pRange",
+        ),
+        (
+            straight("1", inside='<type s="0"><speed max="0"/></type>'),
+            r"line 5, road 1: speed limit 0 m/s \(no unit given\) must lie above 0",
+        ),
+        (straight("1", inside='<type s="0"><speed max="-50" unit="mph"/></type>'), "limit -50 mph"),
+        (straight("1", inside='<type s="0"><speed max="100"/></type>'), "limit 100 m/s .no unit"),
+        (straight("1", inside='<type s="0"><speed max="9" unit="knots"/></type>'), "unit 'knots'"),
+        (straight("1", inside='<type s="0"><speed max="fast"/></type>'), "max = 'fast' is not"),
+        (straight("1", inside='<type s="0"><speed unit="mph"/></type>'), "max is missing"),
+    ],
+)
+def test_an_unusable_file_is_refused_with_its_line(read: Reader, roads: str, message: str) -> None:
+    with pytest.raises(ModelError, match=message) as caught:
+        read(roads)
+    assert "town.xodr" in str(caught.value)
+    assert str(caught.value).count("\n") <= 1
+
+
+def test_another_xml_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "map.xodr"
+    path.write_text("<osm/>")
+    with pytest.raises(ModelError, match="line 1: <osm> where <OpenDRIVE> should be"):
+        read_route(path)
