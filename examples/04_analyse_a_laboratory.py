@@ -3,12 +3,14 @@
 A laboratory delivers ``recordings/PARTICIPANT_PHASE.csv`` and perhaps a questionnaire. Here four
 simulated people stand in for real ones: a small study of our own records all their drives, ten
 times per second. You see shares of the time and scores with the base function (A) and with what was
-learned (B), and Wilcoxon's test; with so few people it says little. Then, for tables and a report:
-
-    pldf analyse laboratory --report report.html
+learned (B), and Wilcoxon's test; with so few people it says little.
 
     python 04_analyse_a_laboratory.py                    # or name a folder of yours:
     python 04_analyse_a_laboratory.py FOLDER
+
+Then, for tables and a report, with the path of the road that was driven:
+
+    pldf analyse laboratory --route my_road.csv --report report.html
 """
 
 import shutil

@@ -126,6 +126,7 @@ def test_analyse_a_laboratory(tmp_path: Path) -> None:
     assert values["satisfying"] == (0.25, 1.25)
     again = run(tmp_path, "04_analyse_a_laboratory.py", tmp_path / "laboratory")
     assert again == said
-    report = ["--report", str(tmp_path / "report.html")]
-    assert cli.main(["analyse", str(tmp_path / "laboratory"), *report]) == 0
+    road, report = str(EXAMPLES / "my_road.csv"), str(tmp_path / "report.html")
+    laboratory = str(tmp_path / "laboratory")
+    assert cli.main(["analyse", laboratory, "--route", road, "--report", report]) == 0
     assert "P003" in (tmp_path / "report.html").read_text(encoding="utf-8")
