@@ -1,8 +1,7 @@
 """The parts of the FMI binding that need no FMU."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from types import SimpleNamespace
 from xml.etree.ElementTree import tostring
 
 import pytest
@@ -131,7 +130,7 @@ def test_access_forgets_groups_that_are_never_repeated():
 
 
 def described(describe=model_description, **changes):
-    signals = tuple(SimpleNamespace(**{**vars(s), **changes.get(s.field, {})}) for s in SIGNALS)
+    signals = tuple(replace(s, **changes.get(s.field, {})) for s in SIGNALS)
     return describe(Model("M", "about", signals, 10.0), {"logAll": "all"})
 
 
