@@ -41,3 +41,12 @@ def test_whole_commands_are_measured(monkeypatch: pytest.MonkeyPatch) -> None:
     times = command_times.command_times(runs=1)
     assert set(times) == {"pldf --help", "pldf route study"}
     assert all(cpu_s > 0.0 for cpu_s in times.values())
+
+
+def test_whole_studies_are_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(BENCHMARKS)
+    import study_times  # noqa: PLC0415 - found by now
+
+    times = study_times.study_times(runs=1, many=2)
+    assert set(times) == {"43 participants of the paper", "2 participants"}
+    assert all(wall_s > 0.0 for wall_s in times.values())
