@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import time
 from collections.abc import Iterator
@@ -12,6 +13,7 @@ from typing import Any
 import pytest
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.actions.action_builder import ActionBuilder
 from selenium.webdriver.common.by import By
 
 REQUEST = "Network.requestWillBeSent"
@@ -126,3 +128,22 @@ def test_it_prints_on_paper(page: webdriver.Chrome) -> None:
     )
     page.execute_script("dispatchEvent(new Event('afterprint'))")
     wait(page, f"{width} > 900")
+
+
+def test_hovering_over_an_intervention_tells_which(page: webdriver.Chrome) -> None:
+    place = """
+        const figure = document.getElementById('figure-compared');
+        figure.scrollIntoView({block: 'center', behavior: 'instant'});
+        const bars = figure._fullData.find((t) => t.yaxis === 'y2' && t.text);
+        const {left, top} = figure.getBoundingClientRect();
+        const {xaxis2, yaxis2} = figure._fullLayout;
+        return [[...bars.text], left + xaxis2._offset + xaxis2.d2p(bars.x[0]) + 1,
+            top + yaxis2._offset + yaxis2.d2p(0.5 * (bars.y[0] + bars.y[2]))];
+    """
+    texts, x, y = page.execute_script(place)
+    assert re.match(r"[AB]\d, (Gas|Brake|Set speed).*: \d+\.\d s$", texts[0])
+    pointer = ActionBuilder(page)
+    pointer.pointer_action.move_to_location(round(x), round(y))
+    pointer.perform()
+    shown = "[...document.querySelectorAll('#figure-compared .hoverlayer text')]"
+    wait(page, f"{shown}.some((told) => {json.dumps(texts)}.includes(told.textContent))")

@@ -187,7 +187,7 @@ def test_axes_are_told_on_the_page() -> None:
     assert layout.yaxis.title.text == "Height (m)<br>over all"
     assert layout.yaxis.ticktext == ('<span style="color:#D55E00">two</span>',)
     assert layout.yaxis.range == (10.0, -1.0)
-    assert (layout.xaxis.ticksuffix, layout.xaxis2.ticksuffix) == (None, " km")
+    assert (layout.xaxis.ticksuffix, layout.xaxis2.ticksuffix) == (" km", " km")
     assert layout.xaxis.matches == "x2"  # zoomed together
     assert (layout.yaxis.fixedrange, layout.xaxis.fixedrange) == (True, False)
 

@@ -53,7 +53,7 @@ class StudyFolder:
     without: frozenset[str] = frozenset()
 
     @cached_property
-    def study(self) -> Mapping[str, Any]:
+    def study_file(self) -> Mapping[str, Any]:
         """The study file that a simulation left in the folder; empty for real participants."""
         path = self.folder / "study.toml"
         try:
@@ -63,7 +63,7 @@ class StudyFolder:
 
     def order(self) -> list[Phase]:
         """Return the drives in the order of the study; repeated phases are numbered anew."""
-        drives = self.study.get("drives", {})
+        drives = self.study_file.get("drives", {})
         repeats = drives.get("per_phase", 1)
         phases = [PHASES[name] for name in drives.get("phases", PHASES) for _ in range(repeats)]
         if repeats == 1:
@@ -82,20 +82,20 @@ class StudyFolder:
 
     def development(self) -> dict[str, str]:
         """Return each drive learned from -> the next one with the learned profile."""
-        found: dict[str, str] = {}
+        followed_in: dict[str, str] = {}
         taught = ""
         for phase in self.order():
             if phase.apply_learned and taught:
-                found.setdefault(taught, phase.name)
+                followed_in.setdefault(taught, phase.name)
             taught = phase.name if phase.learn else taught
-        return found
+        return followed_in
 
     def recordings(self) -> dict[tuple[str, str], Path]:
         """Return the recordings by (participant, phase); ModelError for a name that tells neither.
 
         Participants are in order of their names, drives in the order of the study.
         """
-        found = {}
+        paths = {}
         for path in sorted((self.folder / "recordings").glob("*.csv")):
             participant, _, phase = path.stem.rpartition("_")
             if not participant:
@@ -104,8 +104,8 @@ class StudyFolder:
                 )
             check_phase(str(path), phase)
             if participant not in self.without:
-                found[participant, phase] = path
-        return found
+                paths[participant, phase] = path
+        return paths
 
     def read(self, path: Path) -> Recording:
         """Read a recording with all columns, or with pedals and lever at least.
@@ -184,21 +184,21 @@ def mean_rates(
     drives: Sequence[DriveRow], participants: Sequence[str], measure: str, phases: Collection[str]
 ) -> FloatArray:
     """Return each participant's mean of one rate over the drives of some phases; NaN if none."""
-    found: dict[str, list[float]] = {name: [] for name in participants}
+    rates: dict[str, list[float]] = {name: [] for name in participants}
     for drive in drives:
         if drive.phase in phases:
-            found[drive.participant].append(getattr(drive, f"{measure}_rate"))
-    return np.array([float(np.mean(v)) if v else np.nan for v in found.values()])
+            rates[drive.participant].append(getattr(drive, f"{measure}_rate"))
+    return np.array([float(np.mean(v)) if v else np.nan for v in rates.values()])
 
 
-def analyse(source: StudyFolder, progress: Progress = lambda _done, _all: None) -> Analysis:
-    """Analyse the study in ``source.folder``.
+def analyse(study: StudyFolder, progress: Progress = lambda _done, _all: None) -> Analysis:
+    """Analyse the study in ``study.folder``.
 
     Raises:
         ModelError: naming file, line, participant and phase of what is missing or unusable.
     """
-    drives, origin = _drives(source, progress)
-    compared = source.compared()
+    drives, origin = _drives(study, progress)
+    compared = study.compared()
     check_complete(drives, [name for names in compared.values() for name in names], str(origin))
     participants = tuple(dict.fromkeys(drive.participant for drive in drives))
     if len(participants) < PARTICIPANTS_MIN:
@@ -208,40 +208,40 @@ def analyse(source: StudyFolder, progress: Progress = lambda _done, _all: None) 
         )
     order = {name: at for at, name in enumerate(participants)}
     drives.sort(key=lambda drive: order[drive.participant])
-    answers = _questionnaire(source, participants)
-    found = Analysis(tuple(drives), participants, compared, {}, answers, origin)
+    answers = _questionnaire(study, participants)
+    untested = Analysis(tuple(drives), participants, compared, {}, answers, origin)
     measures = (*RATES, *(answers.scores if answers else ()))
     if not all(compared.values()):
-        raise ModelError(f"{source.folder}: no drives with both systems, so nothing to compare")
+        raise ModelError(f"{study.folder}: no drives with both systems, so nothing to compare")
     comparisons = {
-        name: compare(found.per_participant(name, "A"), found.per_participant(name, "B"))
+        name: compare(untested.per_participant(name, "A"), untested.per_participant(name, "B"))
         for name in measures
     }
-    return replace(found, comparisons=comparisons)
+    return replace(untested, comparisons=comparisons)
 
 
-def _drives(source: StudyFolder, progress: Progress) -> tuple[list[DriveRow], Path]:
+def _drives(study: StudyFolder, progress: Progress) -> tuple[list[DriveRow], Path]:
     """Return all drives, from the table of drives if there is one, else from the recordings."""
-    table = source.folder / "drives.csv"
+    table = study.folder / "drives.csv"
     if table.exists():
-        return read_drives(table, source.without), table
-    recordings = source.recordings()
+        return read_drives(table, study.without), table
+    recordings = study.recordings()
     if not recordings:
         raise ModelError(
-            f"{source.folder}: no drives.csv and no recordings/PARTICIPANT_PHASE.csv to analyse"
+            f"{study.folder}: no drives.csv and no recordings/PARTICIPANT_PHASE.csv to analyse"
         )
     drives = []
     for number, ((participant, phase), path) in enumerate(recordings.items(), start=1):
-        drives.append(row_of(participant, phase, source.read(path), str(path)))
+        drives.append(row_of(participant, phase, study.read(path), str(path)))
         progress(number, len(recordings))
-    return drives, source.folder / "recordings"
+    return drives, study.folder / "recordings"
 
 
-def _questionnaire(source: StudyFolder, participants: Collection[str]) -> Questionnaire | None:
-    path = source.folder / "questionnaire.csv"
+def _questionnaire(study: StudyFolder, participants: Collection[str]) -> Questionnaire | None:
+    path = study.folder / "questionnaire.csv"
     if not path.exists():
         return None
-    answers = read_questionnaire(path, source.without)
+    answers = read_questionnaire(path, study.without)
     for scale, scores in answers.scores.items():
         for participant in participants:
             for system in SYSTEMS:

@@ -66,10 +66,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Analyse, write the tables, print what was found and where it is."""
     road = chosen_road(options)
-    source = StudyFolder(options.folder, road.route if road else None, frozenset(options.without))
+    study = StudyFolder(options.folder, road.route if road else None, frozenset(options.without))
     with Progress(transient=True) as bar:
         task = bar.add_task("recordings", total=None)
-        analysis = analyse(source, lambda done, all_: bar.update(task, completed=done, total=all_))
+        analysis = analyse(study, lambda done, all_: bar.update(task, completed=done, total=all_))
     written = write_tables(analysis, options.out or options.folder / "analysis")
     console = Console()
     console.print(_means(analysis))
@@ -77,15 +77,15 @@ def run(options: argparse.Namespace) -> None:
     for line in _remarks(analysis):
         console.print(line, highlight=False)
     if options.report or options.figures:
-        _show(analysis, source, options)
+        _show(analysis, study, options)
     print(f"Tables: {', '.join(path.name for path in written)} in {written[0].parent}.")
 
 
-def _show(analysis: Analysis, source: StudyFolder, options: argparse.Namespace) -> None:
+def _show(analysis: Analysis, study: StudyFolder, options: argparse.Namespace) -> None:
     """Write report and figures, as far as they are wanted."""
     from ..report.contents import collect  # noqa: PLC0415 - slow to import
 
-    contents = collect(analysis, source, options.driver)
+    contents = collect(analysis, study, options.driver)
     if options.report:
         from ..report.page import write_report  # noqa: PLC0415
 
@@ -107,11 +107,11 @@ def _means(analysis: Analysis) -> Table:
     table = Table(title=title, box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for heading in ("", "A", "B", "A - B", "95 % interval", "paper A", "paper B"):
         table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
-    for measure, found in analysis.comparisons.items():
+    for measure, comparison in analysis.comparisons.items():
         unit = 100.0 if measure in RATES else 1.0
         paper = published_means(measure) if measure in RATES else ()
-        change = found.difference
-        values = (found.mean_first, found.mean_second, change.value)
+        change = comparison.difference
+        values = (comparison.mean_first, comparison.mean_second, change.value)
         table.add_row(
             _NAMES[measure],
             *(f"{unit * value:.2f}" for value in values),
@@ -128,8 +128,8 @@ def _tests(analysis: Analysis) -> Table:
     for heading in ("", f"t({df})", "p", "W", "n", "p", "by", "d_z", "r"):
         justify: Literal["left", "right"] = "right" if heading else "left"
         table.add_column(heading, justify=justify, no_wrap=True)
-    for measure, found in analysis.comparisons.items():
-        t, ranks = found.t, found.signed_rank
+    for measure, comparison in analysis.comparisons.items():
+        t, ranks = comparison.t, comparison.signed_rank
         used = TESTS[measure].kind if measure in TESTS else ""
         table.add_row(
             _NAMES[measure].partition(",")[0],
@@ -139,8 +139,8 @@ def _tests(analysis: Analysis) -> Table:
             str(ranks.pairs),
             f"{ranks.p:.2g}",
             ranks.method,
-            f"{found.d_z:.2f}",
-            f"{found.rank_biserial:.2f}",
+            f"{comparison.d_z:.2f}",
+            f"{comparison.rank_biserial:.2f}",
         )
     return table
 

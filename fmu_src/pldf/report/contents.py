@@ -83,32 +83,32 @@ class Contents:
         return STUDY in self.texts
 
 
-def collect(analysis: Analysis, source: StudyFolder, driver: str | None = None) -> Contents:
+def collect(analysis: Analysis, study: StudyFolder, driver: str | None = None) -> Contents:
     """Read what the report of a study shows beside its numbers.
 
     Args:
         analysis: of the study.
-        source: where it lies.
+        study: where it lies.
         driver: the participant to show in detail; None: the one nearest to the median effect.
 
     Raises:
         ModelError: there are no recordings of ``driver``, or they are not from the route.
     """
-    folder = source.folder
+    folder = study.folder
     texts = {
         name: (folder / name).read_text(encoding="utf-8")
         for name in (STUDY, VERSIONS)
         if (folder / name).exists()
     }
     parameters = json.loads(texts.get(VERSIONS, "{}")).get("parameters", {})
-    route = source.route or _route_of(source)
+    route = study.route or _route_of(study)
     function = _function(parameters.get("pldf", {}))
-    shown = _choose(analysis, source, driver)
+    shown = _choose(analysis, study, driver)
     return Contents(
         analysis=analysis,
-        title=str(source.study.get("title", f"Study {folder.resolve().name}")),
+        title=str(study.study_file.get("title", f"Study {folder.resolve().name}")),
         route=_facts(route, function),
-        driver=None if shown is None else _driver(shown, source, route, function),
+        driver=None if shown is None else _driver(shown, study, route, function),
         long_run=read_long_run(folder / LONG_RUN) if (folder / LONG_RUN).exists() else {},
         texts=texts,
         parameters=parameters,
@@ -116,11 +116,11 @@ def collect(analysis: Analysis, source: StudyFolder, driver: str | None = None) 
     )
 
 
-def _route_of(source: StudyFolder) -> Route:
+def _route_of(study: StudyFolder) -> Route:
     """Return the route of the study file, if that can be found without knowing its place."""
-    name = str(source.study.get("road", {}).get("route", "study"))
+    name = str(study.study_file.get("road", {}).get("route", "study"))
     if name != "study" and not name.isdigit():
-        raise ModelError(f"{source.folder}: driven on {name}; name the route with --route")
+        raise ModelError(f"{study.folder}: driven on {name}; name the route with --route")
     return open_route(name)
 
 
@@ -158,15 +158,15 @@ def _parameter_ranges(path: Path) -> Mapping[str, tuple[float, float, float]]:
     }
 
 
-def _choose(analysis: Analysis, source: StudyFolder, wanted: str | None) -> str | None:
+def _choose(analysis: Analysis, study: StudyFolder, wanted: str | None) -> str | None:
     """Return whom to show: of those recorded, who is nearest to the median fall of the rate."""
-    recorded = source.recordings()
-    first = _first_taught(source)
+    recorded = study.recordings()
+    first = _first_taught(study)
     complete = [p for p in analysis.participants if (p, first) in recorded]
     if wanted is not None:
         if wanted not in complete:
             raise ModelError(
-                f"{source.folder}: no recordings/{wanted}_{first}.csv, so {wanted} cannot "
+                f"{study.folder}: no recordings/{wanted}_{first}.csv, so {wanted} cannot "
                 f"be shown; recorded are {', '.join(complete) or 'none'}"
             )
         return wanted
@@ -178,16 +178,16 @@ def _choose(analysis: Analysis, source: StudyFolder, wanted: str | None) -> str 
     return min(complete, key=lambda name: abs(falls[name] - median))
 
 
-def _first_taught(source: StudyFolder) -> str:
+def _first_taught(study: StudyFolder) -> str:
     """Return the first drive that is learned from; it follows the base profile."""
-    return next((phase.name for phase in source.order() if phase.learn), "")
+    return next((phase.name for phase in study.order() if phase.learn), "")
 
 
 def _driver(
-    participant: str, source: StudyFolder, route: Route, function: DrivingFunction
+    participant: str, study: StudyFolder, route: Route, function: DrivingFunction
 ) -> DriverShown:
-    first = _first_taught(source)
-    known = replace(source, route=route)
+    first = _first_taught(study)
+    known = replace(study, route=route)
     paths = {phase: path for (who, phase), path in known.recordings().items() if who == participant}
     recordings = {phase: known.read(path) for phase, path in paths.items()}
     for phase, recording in recordings.items():
@@ -202,7 +202,7 @@ def _driver(
         profile=profile,
         steps=explain_steps(recordings[first], route, function),
         explained=first,
-        acting=tuple(p for names in source.compared().values() for p in names if p in recordings),
+        acting=tuple(p for names in study.compared().values() for p in names if p in recordings),
     )
 
 

@@ -142,6 +142,13 @@ class Axis:
     grid: bool = True
 
     @property
+    def ends(self) -> tuple[float, float]:
+        """Both ends; ValueError if the data choose one."""
+        if self.low is None or self.high is None:
+            raise ValueError(f"axis {self.label} has no fixed ends")
+        return self.low, self.high
+
+    @property
     def title(self) -> str:
         """Label with unit, and the note below it."""
         whole = f"{self.label} ({self.unit})" if self.unit else self.label

@@ -18,9 +18,6 @@ _PX_PER_IN: Final = 96.0
 _TOP_PX, _BOTTOM_PX, _LEGEND_ROW_PX = 44, 66, 20
 _GAP_PX: Final = 34  # between rows
 _LEGEND_ENTRIES_PER_ROW: Final = 6  # about
-_DASHES: Final = {"solid": "solid", "dash": "dash", "dot": "dot", "dashdot": "dashdot"}
-_MARKS: Final = {"circle": "circle", "square": "square", "triangle": "triangle-up",
-                 "diamond": "diamond"}  # fmt: skip
 _CONFIG: Final = {
     "displaylogo": False,
     "responsive": True,
@@ -50,12 +47,13 @@ def drawn(scene: Scene) -> Any:
     for number, panel in enumerate(scene.panels):
         place = {"row": number // scene.columns + 1, "col": number % scene.columns + 1}
         _draw_panel(figure, panel, place)
-        figure.update_xaxes(**_axis(panel.x), **place)
+        suffix = f" {panel.x.unit}" if panel.x.unit else ""
+        figure.update_xaxes(**_axis(panel.x), ticksuffix=suffix, **place)
         figure.update_yaxes(**_axis(panel.y), title_text=_text(panel.y.title), **place)
         if scene.repeats_y(number):
             figure.update_yaxes(showticklabels=False, title_text="", **place)
-        if scene.at_foot(number):
-            figure.update_xaxes(**_foot(panel.x), **place)
+        if scene.at_foot(number) and not suffix:  # the unit tells enough
+            figure.update_xaxes(title_text=_text(panel.x.title), **place)
     _style(figure, scene, rows_px + gaps_px)
     _list_once(figure, scene)
     if scene.stages:
@@ -104,7 +102,7 @@ def _trace(element: Line | Band | Boxes, unit: str) -> dict[str, Any]:
     corners = [(b.start, b.end, b.end, b.start, b.start, np.nan) for b in element.boxes]
     heights = [(b.low, b.low, b.high, b.high, b.low, np.nan) for b in element.boxes]
     hover = [text for b in element.boxes for text in [_text(b.hover)] * 6]
-    trace = _area(np.ravel(corners), np.ravel(heights), element)
+    trace = _area(np.ravel(corners), np.ravel(heights), element) | {"hoveron": "points"}
     return trace | (_hover(hover) if any(hover) else _NO_HOVER)
 
 
@@ -116,12 +114,12 @@ def _line(line: Line, unit: str) -> dict[str, Any]:
         "mode": "lines+markers" if stroke.mark else "lines", "showlegend": line.listed,
         "line": {
             "color": _rgba(stroke.colour, stroke.opacity), "width": _PX_PER_PT * stroke.width_pt,
-            "dash": _DASHES[stroke.dash], "shape": "hv" if line.stepped else "linear",
+            "dash": stroke.dash, "shape": "hv" if line.stepped else "linear",
         },
         "hovertemplate": f"{name}: %{{y:.1f}}{unit}<extra></extra>",
     }  # fmt: skip
     if stroke.mark:
-        symbol = _MARKS[stroke.mark]
+        symbol = "triangle-up" if stroke.mark == "triangle" else stroke.mark
         edge = {"color": stroke.colour, "width": 1.5 if stroke.hollow else 0}
         trace["marker"] = {
             "symbol": symbol, "size": _PX_PER_PT * stroke.mark_pt, "line": edge,
@@ -176,11 +174,6 @@ def _axis(axis: Axis) -> dict[str, Any]:
             for tick in axis.ticks
         ]
     return described
-
-
-def _foot(x: Axis) -> dict[str, Any]:
-    """Return what the lowest x axis says: its unit after each number, or its label."""
-    return {"ticksuffix": f" {x.unit}"} if x.unit else {"title_text": _text(x.title)}
 
 
 def _style(figure: Any, scene: Scene, panels_px: float) -> None:

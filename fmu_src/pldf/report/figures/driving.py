@@ -17,12 +17,11 @@ from .. import palette
 from ..scene import Axis, Band, Box, Boxes, Element, Fill, Line, Panel, Scene, Stroke, Tick
 from .speeds import (
     KM,
-    SPEED,
     base_line,
     distance_of,
     limit_line,
+    speed_axis,
     speed_line,
-    speed_range,
     thinned,
     zero_line,
 )
@@ -37,13 +36,7 @@ _PEDAL_TICKS_MAX: Final = 6
 def recorded(
     recordings: Mapping[str, Recording], title: str, profile: StoredProfile | None = None
 ) -> Scene:
-    """Return the figure of one recording, or of several to compare.
-
-    Args:
-        recordings: complete recordings by name.
-        title: of the whole figure.
-        profile: show the newest state of this profile too.
-    """
+    """Return the figure of one complete recording, or of several to compare."""
     if len(recordings) > 1:
         return compared(recordings, title, profile)
     return one_drive(next(iter(recordings.values())), title, profile)
@@ -51,8 +44,7 @@ def recorded(
 
 def one_drive(recording: Recording, title: str, profile: StoredProfile | None = None) -> Scene:
     """Return speed, interventions and pedals of one recording."""
-    x, (low, high) = distance_of(recording), speed_range([recording])
-    speeds = replace(SPEED, low=low, high=high)
+    x, speeds = distance_of(recording), speed_axis([recording])
     travel = thinned(recording)
     s_km, gas, brake = travel["s_m"] * KM, travel["gas_pedal"], travel["brake_pedal"]
     none = np.zeros(len(s_km))
@@ -62,14 +54,8 @@ def one_drive(recording: Recording, title: str, profile: StoredProfile | None = 
         Band(s_km, -100.0 * brake, none, down, "Brake pedal travel", listed=False),
         zero_line(x),
     )
-    drive = (*_drive(recording, speeds), *_newest(profile))
-    return Scene(
-        (
-            Panel(drive, x, speeds, 3.6),
-            Panel(pedals, x, _pedal_axis([recording]), 1.3),
-        ),
-        title,
-    )
+    drive = Panel((*_drive(recording, speeds), *_newest(profile)), x, speeds, 3.6)
+    return Scene((drive, Panel(pedals, x, _pedal_axis([recording]), 1.3)), title)
 
 
 def compared(
@@ -83,7 +69,7 @@ def compared(
         profile: show the newest state of this profile too.
     """
     first = next(iter(recordings.values()))
-    x, (low, high) = distance_of(first), speed_range(recordings.values())
+    x = distance_of(first)
     rows = thinned(first)
     speeds: list[Element] = [
         limit_line(first["s_m"], first["limit_mps"]), base_line(rows["s_m"], rows["base_mps"]),
@@ -101,7 +87,7 @@ def compared(
     )  # fmt: skip
     return Scene(
         (
-            Panel(tuple(speeds), x, replace(SPEED, low=low, high=high), 3.4),
+            Panel(tuple(speeds), x, speed_axis(recordings.values()), 3.4),
             Panel(tuple(_lanes(recordings)), x, lanes, 0.4 + 0.22 * len(recordings)),
             Panel(tuple(pedals), x, _pedal_axis(recordings.values()), 1.2),
         ),
@@ -117,8 +103,7 @@ def drives(recordings: Mapping[str, Recording], titles: Mapping[str, str], title
         titles: what each drive was.
         title: of the whole figure.
     """
-    x, (low, high) = distance_of(next(iter(recordings.values()))), speed_range(recordings.values())
-    speeds = replace(SPEED, low=low, high=high)
+    x, speeds = distance_of(next(iter(recordings.values()))), speed_axis(recordings.values())
     return Scene(
         tuple(
             Panel(_drive(recording, speeds), x, speeds, 2.2, f"{name}  {titles[name]}")
@@ -155,12 +140,10 @@ def _drive(recording: Recording, speeds: Axis) -> tuple[Element, ...]:
             speed_line(s_m, followed, palette.FOLLOWED, label),
         ]
     elements.append(speed_line(s_m, rows["speed_mps"], palette.DRIVEN, "Speed driven"))
-    assert speeds.low is not None
-    assert speeds.high is not None
-    top = {kind: speeds.high for kind in palette.INTERVENTIONS}
-    top["set_speed"] = speeds.low + _STRIP * (speeds.high - speeds.low)
-    for kind, found in _interventions(recording).items():
-        boxes = (_box(recording, one, speeds.low, top[kind]) for one in found)
+    low, high = speeds.ends
+    for kind, intervals in _interventions(recording).items():
+        top = low + _STRIP * (high - low) if kind == "set_speed" else high
+        boxes = (_box(recording, interval, low, top) for interval in intervals)
         name, fill = palette.INTERVENTIONS[kind]
         elements.append(Boxes(tuple(boxes), fill, name))
     return tuple(elements)
@@ -169,14 +152,14 @@ def _drive(recording: Recording, speeds: Axis) -> tuple[Element, ...]:
 def _interventions(recording: Recording) -> dict[str, list[Interval]]:
     """Return the interventions of a recording by kind; kinds that do not occur are left out."""
     every = [*pedal_interventions(recording), *set_speed_interventions(recording)]
-    kinds = {kind: [one for one in every if one.kind == kind] for kind in palette.INTERVENTIONS}
-    return {kind: found for kind, found in kinds.items() if found}
+    by_kind = {kind: [i for i in every if i.kind == kind] for kind in palette.INTERVENTIONS}
+    return {kind: intervals for kind, intervals in by_kind.items() if intervals}
 
 
-def _box(recording: Recording, one: Interval, low: float, high: float, drive: str = "") -> Box:
-    start, end = recording["s_m"][[one.first, one.last]] * KM
-    begin_s, end_s = recording["time_s"][[one.first, one.last]]
-    name = palette.INTERVENTIONS[one.kind][0]
+def _box(recording: Recording, interval: Interval, low: float, high: float, drive: str = "") -> Box:
+    rows = [interval.first, interval.last]
+    (start, end), (begin_s, end_s) = recording["s_m"][rows] * KM, recording["time_s"][rows]
+    name = palette.INTERVENTIONS[interval.kind][0]
     where = f"{drive}, {name}" if drive else name
     return Box(float(start), float(end), low, high, f"{where}: {end_s - begin_s:.1f} s")
 
@@ -186,9 +169,9 @@ def _lanes(recordings: Mapping[str, Recording]) -> list[Element]:
     ends = {"gas": (-0.35, 0.0), "brake": (-0.35, 0.0), "set_speed": (0.03, 0.3)}
     bars: dict[str, list[Box]] = {kind: [] for kind in palette.INTERVENTIONS}
     for lane, (name, recording) in enumerate(recordings.items()):
-        for kind, found in _interventions(recording).items():
+        for kind, intervals in _interventions(recording).items():
             low, high = (lane + end for end in ends[kind])
-            bars[kind] += [_box(recording, one, low, high, name) for one in found]
+            bars[kind] += [_box(recording, interval, low, high, name) for interval in intervals]
     return [
         Boxes(tuple(boxes), replace(fill, opacity=_BAR_OPACITY), name)
         for (name, fill), boxes in zip(palette.INTERVENTIONS.values(), bars.values(), strict=True)

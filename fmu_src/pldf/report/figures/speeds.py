@@ -39,9 +39,7 @@ def base_line(s_m: FloatArray, base_mps: FloatArray) -> Line:
 
 def zero_line(x: Axis) -> Line:
     """Return a thin line at zero along the whole axis ``x``."""
-    assert x.low is not None
-    assert x.high is not None
-    return Line(np.array([x.low, x.high]), np.zeros(2), palette.ZERO)
+    return Line(np.array(x.ends), np.zeros(2), palette.ZERO)
 
 
 def distance_axis(start_m: float, end_m: float) -> Axis:
@@ -54,14 +52,14 @@ def distance_of(recording: Recording) -> Axis:
     return distance_axis(recording["s_m"][0], recording["s_m"][-1])
 
 
-def speed_range(recordings: Iterable[Recording]) -> tuple[float, float]:
-    """Return the ends of a speed axis with all that was driven and allowed, with room below."""
+def speed_axis(recordings: Iterable[Recording]) -> Axis:
+    """Return a speed axis with all that was driven and allowed, with room below."""
     names = ("limit_mps", "base_mps", "profile_mps", "speed_mps")
     shown = [(r[name], name) for r in recordings for name in names]
     low = KMH_PER_MPS * min(float(np.min(v)) for v, name in shown if name != "limit_mps")
     high = KMH_PER_MPS * max(float(np.max(v)) for v, _ in shown)
     room = high - low
-    return max(low - 0.25 * room - 2.0, 0.0), high + 0.08 * room + 2.0
+    return replace(SPEED, low=max(low - 0.25 * room - 2.0, 0.0), high=high + 0.08 * room + 2.0)
 
 
 def thinned(recording: Recording) -> Recording:
