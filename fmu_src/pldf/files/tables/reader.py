@@ -223,6 +223,8 @@ def _positions(table: Table, header: Sequence[str]) -> dict[str, int]:
     twice = [name for name in form.names if names.count(name) > 1]
     found = (("missing", missing), ("repeated", twice), ("unknown", unknown))
     told = [f"{what} column {', '.join(which)[:_HEADER_MAX]}" for what, which in found if which]
+    if missing and len(names) == 1 and re.search("[;\t]", names[0]):
+        told.append(f"the header is {names[0][:_CELL_MAX]!r}, commas separate columns")
     if told:
         table.refuse([Fault(table.header_line, "", f"{'; '.join(told)}; {_has(form)}")])
     return {name: names.index(name) for name in form.names if name in names}
