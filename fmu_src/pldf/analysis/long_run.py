@@ -12,20 +12,14 @@ from ..files.tables import Column, Format, read_table
 
 Columns = Mapping[str, list[float]]
 
-# Column -> what it is, for axes.
-PANELS: Final = {
-    "combined_percent": "Pedals or set speed<br>(% of the time)",
-    "pedal_percent": "Pedals<br>(% of the time)",
-    "content_percent": "Drivers who<br>did nothing (%)",
-    "wish_error_kmh": "Profile minus wish,<br>RMS (km/h)",
-}
+MEASURES: Final = ("combined_percent", "pedal_percent", "content_percent", "wish_error_kmh")
 LONG_RUN: Final = Format(
     "long run",
     "drive",
     (
         Column("stretch_factor"),
         Column("drive", "whole", low=1.0),
-        *(Column(name, unit="km/h" if name.endswith("_kmh") else "%") for name in PANELS),
+        *(Column(name, unit="km/h" if name.endswith("_kmh") else "%") for name in MEASURES),
     ),
 )
 
