@@ -170,7 +170,7 @@ def _is_settled(st: DriverState) -> bool:
 
 def _follow_urge(st: DriverState, urge: int, passed_ns: int) -> None:
     """Press a pedal once the same urge has lasted for the reaction time."""
-    if urge != st.urge:
+    if urge != st.urge:  # another wish starts its own reaction time, drawn once
         st.urge = urge
         st.urge_ns = 0
         st.delay_ns = varied_ns(st, st.driver_reaction_s) if st.phase == WATCHING else st.delay_ns

@@ -123,7 +123,7 @@ def _move(st: VehicleState, acceleration_mps2: float, step_s: float) -> None:
         st.s_m += 0.5 * (before + after) * step_s
         st.speed_mps = after
     elif before > 0.0:
-        st.s_m += 0.5 * before * step_s * before / (before - after)
+        st.s_m += 0.5 * before * step_s * before / (before - after)  # this share of the step
         st.speed_mps = 0.0
 
 

@@ -130,10 +130,10 @@ def _cache_folder(modules: Sequence[ModuleType]) -> Iterator[bool]:
 
 def digest(modules: Sequence[ModuleType]) -> str:
     """Return 16 hexadecimal digits of what compiled functions depend on: source, numba, options."""
-    found = hashlib.sha256(f"{numba.__version__} {OPTIONS}".encode())
+    sources = hashlib.sha256(f"{numba.__version__} {OPTIONS}".encode())
     for module in modules:
-        found.update(inspect.getsource(module).encode())
-    return found.hexdigest()[:16]
+        sources.update(inspect.getsource(module).encode())
+    return sources.hexdigest()[:16]
 
 
 def pack(record: Any) -> NDArray[np.void]:

@@ -171,17 +171,17 @@ class DrivingFunction(Instance[PldfState]):
                 self.report("warning", NO_STORE)
             return new
         try:
-            found = self._store.load(st.driver_id, route, len(base))
+            stored = self._store.load(st.driver_id, route, len(base))
         except ModelError as refusal:
             st.profile_status = PROFILE_REFUSED
             self.report("warning", str(refusal))
             return new
-        if found is None:
+        if stored is None:
             st.profile_status = PROFILE_BASE
             return new
-        st.profile_status = PROFILE_LOADED if found.iterations else PROFILE_BASE
+        st.profile_status = PROFILE_LOADED if stored.iterations else PROFILE_BASE
         # The planner's parameters may have changed since the file was written.
-        return replace(found, base_mps=base)
+        return replace(stored, base_mps=base)
 
     def _save(self, iteration: Iteration) -> None:
         if self._store is None or self.stored is None:

@@ -37,23 +37,23 @@ class Access:
     def group(self, references: Sequence[int]) -> Group:
         """Return the group of these value references; ModelError if one is unknown."""
         key = tuple(references)
-        found = self._groups.get(key)
-        if found is None:
-            found = _group([self._signal(reference) for reference in key])
-            _remember(self._groups, key, found)
-        return found
+        group = self._groups.get(key)
+        if group is None:
+            group = _group([self._signal(reference) for reference in key])
+            _remember(self._groups, key, group)
+        return group
 
     def writable(self, references: Sequence[int]) -> Group:
         """Return the group, ModelError if one of its variables is an output."""
         key = tuple(references)
-        found = self._writable.get(key)
-        if found is None:
-            found = self.group(key)
-            if found.outputs:
+        group = self._writable.get(key)
+        if group is None:
+            group = self.group(key)
+            if group.outputs:
                 name = next(s.name for s in map(self._signal, key) if s.causality == "output")
                 raise ModelError(f"{name} is an output, it cannot be set")
-            _remember(self._writable, key, found)
-        return found
+            _remember(self._writable, key, group)
+        return group
 
     def _signal(self, reference: int) -> Signal:
         signal = self._known.get(reference)

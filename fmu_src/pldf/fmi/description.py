@@ -121,11 +121,11 @@ def enumerations(signals: tuple[Signal, ...]) -> dict[str, Enumeration]:
 
 
 def _types(root: Element, signals: tuple[Signal, ...]) -> None:
-    found = enumerations(signals)
-    if not found:
+    used = enumerations(signals)
+    if not used:
         return
     definitions = SubElement(root, "TypeDefinitions")
-    for name, enumeration in found.items():
+    for name, enumeration in used.items():
         kind = SubElement(SubElement(definitions, "SimpleType", {"name": name}), "Enumeration")
         add_items(kind, enumeration)
 
@@ -144,7 +144,7 @@ def _variable(signal: Signal, reference: int) -> Element:
 
 def attributes(signal: Signal, reference: int) -> dict[str, str]:
     """Return what is said of a variable of any type."""
-    said = {
+    described = {
         "name": signal.name,
         "valueReference": str(reference),
         "description": signal.description,
@@ -152,10 +152,10 @@ def attributes(signal: Signal, reference: int) -> dict[str, str]:
         "variability": _variability(signal),
     }
     if signal.causality == "parameter":
-        said["initial"] = "exact"
+        described["initial"] = "exact"
     elif signal.causality != "input":
-        said["initial"] = "calculated"
-    return said
+        described["initial"] = "calculated"
+    return described
 
 
 def _variability(signal: Signal) -> str:
@@ -166,19 +166,19 @@ def _variability(signal: Signal) -> str:
 
 def type_attributes(signal: Signal) -> dict[str, str]:
     """Return what is said of a variable of its type: enumeration, unit, range and start."""
-    said = {}
+    described = {}
     if signal.enumeration is not None:
-        said["declaredType"] = signal.enumeration.name
+        described["declaredType"] = signal.enumeration.name
     if signal.unit:
-        said["unit"] = signal.unit
+        described["unit"] = signal.unit
         if signal.unit in DISPLAY:
-            said["displayUnit"] = DISPLAY[signal.unit][0]
+            described["displayUnit"] = DISPLAY[signal.unit][0]
     for name, bound in (("min", signal.low), ("max", signal.high)):
         if bound is not None:
-            said[name] = literal(signal, bound)
+            described[name] = literal(signal, bound)
     if signal.causality in ("parameter", "input"):
-        said["start"] = literal(signal, signal.start)
-    return said
+        described["start"] = literal(signal, signal.start)
+    return described
 
 
 def literal(signal: Signal, value: float | str) -> str:

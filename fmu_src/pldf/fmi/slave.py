@@ -136,7 +136,7 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
     def exit_initialization_mode(self) -> None:
         """Initialize the model with everything that was set."""
         self._session.exit()
-        self._tell()
+        self._log_messages()
 
     @_answered
     def do_step(self, current_time: float, step_size: float) -> bool:
@@ -146,14 +146,14 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
             self._refuse(problem)
             return False
         self._session.step(current_time, step_size)
-        self._tell()
+        self._log_messages()
         return True
 
     @_answered
     def terminate(self) -> None:
         """End the drive."""
         self._session.terminate()
-        self._tell()
+        self._log_messages()
 
     def __del__(self) -> None:
         """End the drive if reset or release come without terminate; nobody listens any more."""
@@ -219,7 +219,7 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
     @_answered
     def _set_fmu_state(self, state: bytes) -> None:
         self._session.restore(state)
-        self._tell()
+        self._log_messages()
 
     @staticmethod
     def _fmu_state_to_bytes(state: bytes) -> bytes:
@@ -236,7 +236,7 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
         if library.is_file():
             release_at_exit(library)
 
-    def _tell(self) -> None:
+    def _log_messages(self) -> None:
         """Hand the model's messages to the logger; importers may print them with printf."""
         for message in self._session.model.messages:
             status, category = _LOG[message.level]
@@ -244,7 +244,7 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]  # pythonfmu ships no types
         self._session.model.messages.clear()
 
     def _refuse(self, text: str) -> None:
-        self._tell()
+        self._log_messages()
         self.log(text.replace("%", "%%"), Fmi2Status.error, "logStatusError")
         self._complain(text)
 

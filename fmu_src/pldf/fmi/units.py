@@ -51,10 +51,10 @@ def base_unit(unit: str) -> BaseUnit:
 
 
 def _factors(part: str, unit: str) -> list[tuple[str, int]]:
-    found = []
+    factors = []
     for piece in part.split(".") if part not in ("", "1") else ():
         match = _FACTOR.fullmatch(piece)
         if match is None or match[1] not in _SYMBOLS:
             raise ValueError(f"unit {unit!r}: {piece!r} is not a known unit symbol")
-        found.append((match[1], int(match[2] or 1)))
-    return found
+        factors.append((match[1], int(match[2] or 1)))
+    return factors

@@ -26,8 +26,8 @@ from typing import Final
 
 def hold(*objects: object) -> None:
     """Add one reference that nobody owns to each object, for the wrapper to give up."""
-    for thing in objects:
-        ctypes.pythonapi.Py_IncRef(ctypes.py_object(thing))
+    for held in objects:
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(held))
 
 
 def leave_path(folder: str) -> None:

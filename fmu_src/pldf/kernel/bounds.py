@@ -39,6 +39,7 @@ def enforce_bounds(st: PldfState, route: RouteArrays, speed: Floats, first: int,
     n = len(speed)
     for i in range(first, last + 1):
         speed[i] = min(speed[i], hard_cap(st, route, i))
+    # Lowered before raised: what is raised to an unchanged edge must not be lowered again.
     for i in range(max(first, 1), last + 1):
         speed[i] = lowered(speed[i], speed[i - 1], rise)
     for i in range(min(last, n - 2), first - 1, -1):
@@ -49,6 +50,8 @@ def enforce_bounds(st: PldfState, route: RouteArrays, speed: Floats, first: int,
     if last < n - 1:
         for i in range(last, first - 1, -1):
             speed[i] = _raised(speed[i], speed[last + 1], rise * (last + 1 - i))
+    # With neighbours that keep the caps only rounding is left to do. With others the caps win, and
+    # the acceleration bound gives way.
     for i in range(first, last + 1):
         speed[i] = min(speed[i], hard_cap(st, route, i))
 

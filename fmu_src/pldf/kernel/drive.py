@@ -68,10 +68,10 @@ def drive_step(
         st.sampled_y_m = st.vehicle_y_m
         record_sample(st, route, trace)
         update_mode_and_set_speed(st, route, profile)
-    else:
+    else:  # no sample either: what is not known is neither recorded nor a place
         st.mode = next_mode(st.mode, FAIL)
     update_request(st, route, profile, step_s)
-    st.time_ns += int(1e9 * step_s + 0.5)
+    st.time_ns += int(1e9 * step_s + 0.5)  # whole: a sum of float steps would drift
     st.ahead_m = 0.0
     if st.input_state != INPUT_INVALID:
         st.ahead_m = max(st.vehicle_speed_mps, 0.0) * step_s

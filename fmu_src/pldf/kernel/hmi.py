@@ -32,7 +32,7 @@ def find_turns(speed: Floats, turn_m: Floats) -> None:
     """Fill ``turn_m``: where the present acceleration phase of ``speed``, else the next, ends."""
     n = len(speed)
     turn_m[n - 1] = n - 1.0
-    after = 0
+    after = 0  # phase of the metre behind this one; cruising (0) lasts until the next phase ends
     for i in range(n - 2, -1, -1):
         acceleration = 0.5 * (speed[i + 1] * speed[i + 1] - speed[i] * speed[i])
         phase = 0

@@ -42,6 +42,8 @@ def position_of(rising: Floats, value: float, start: int, end: int) -> float:
     """
     if value <= rising[start]:
         return float(start)
+    # From the end: where the car stood still (equal values) its last node counts; and callers look
+    # a few seconds back from ``end``.
     for i in range(end, start, -1):
         if rising[i - 1] <= value:
             step = rising[i] - rising[i - 1]

@@ -64,6 +64,7 @@ def _plan_with_offsets(
     road = (route.limit_mps, following.offset_mps, route.curvature_per_m)
     plan(st, road, following.planned_mps, work)
     for i in range(len(following.planned_mps)):
+        # The hull of the planner rounds differently with other numbers far away.
         if abs(following.planned_mps[i] - profile.planned_mps[i]) <= SAME_PLAN_MPS:
             following.planned_mps[i] = profile.planned_mps[i]
 
@@ -102,6 +103,7 @@ def _preprocess(st: PldfState, route: RouteArrays, trace: TraceArrays, work: Wor
         work.a[i] = trace.speed_mps[i]
         work.b[i] = FREE if trace.usable[i] > 0.0 else NOT_LEARNED
     for k in range(st.drive_interventions):
+        # One without length has no weights in eq. (2): pressed and released between two samples.
         if trace.end_m[k] > max(trace.start_m[k], float(st.first_node)):
             _insert_stretched(st, trace, work, k, stretch_factor(st, route, trace, k))
 
@@ -180,10 +182,12 @@ def _learn_segment(st: PldfState, work: Work, following: NextArrays, first: int,
     for i in range(first, last + 1):
         driven = following.learned_mps[i]
         work.d[i] = driven + st.learning_weight * (work.a[i] - driven)
+    # Nodes before the first intervention belong to it, nodes behind one to the one just ended.
     number = 0.0
     for i in range(last, first - 1, -1):
         number = work.b[i] if work.b[i] > 0.0 else number
     for i in range(first, last + 1):
+        # Counted from the unchanged neighbours, so that not even the outermost node jumps.
         edge = min(i - first + 1, last - i + 1)
         share = min(edge / (st.learning_fade_m + 1.0), 1.0)
         driven = following.learned_mps[i]

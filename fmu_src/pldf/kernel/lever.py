@@ -14,7 +14,7 @@ DOWN_CONTACT = 8
 UP_LONG_CONTACT = 16
 DOWN_LONG_CONTACT = 32
 
-SAME_SPEED_MPS = 1e-6
+SAME_SPEED_MPS = 1e-6  # tips are added up: 5 down and 5 up is the limit again, but for rounding
 
 
 def closed_contacts(st: PldfState) -> int:
@@ -57,6 +57,7 @@ def update_set_speed(
     automatic = automatic_set_speed(route, profile, cell)
     wanted = (st.manual_set_mps if st.manual_set_mps > 0.0 else automatic) + tip
     wanted = min(max(wanted, st.control_set_speed_min_mps), st.control_set_speed_max_mps)
+    # Learned, not planned: behind the sign the car goes on with the profile it follows.
     st.manual_end_m = profile.limit_end_m[cell]
     st.manual_behind_mps = value_at(profile.learned_mps, st.manual_end_m)
     st.manual_set_mps = wanted

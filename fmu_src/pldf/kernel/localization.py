@@ -8,6 +8,7 @@ from .arrays import RouteArrays
 from .codes import INPUT_OK, OFF_ROUTE, POSITION_JUMP, XY
 from .state import PldfState
 
+# How far from the expected place the line is searched; further away lie roads that cross it.
 SEARCH_MARGIN_M = 20.0
 SEARCH_GROWTH_MPS = 100.0  # a car that has left the route is looked for further away, later
 
@@ -17,22 +18,23 @@ def locate(st: PldfState, route: RouteArrays) -> None:
     missing_s = 1e-9 * (st.time_ns - st.valid_ns)
     expected = st.s_m + max(st.vehicle_speed_mps, 0.0) * missing_s
     distance = 0.0
-    found = st.vehicle_s_m
+    s_m = st.vehicle_s_m
     if st.localization == XY:
         reach = SEARCH_MARGIN_M + SEARCH_GROWTH_MPS * missing_s
         if st.localized == 0:
             reach = float(len(route.x_m))
-        found, distance = project(route, st, expected, reach)
+        s_m, distance = project(route, st, expected, reach)
     end = len(route.limit_mps) - 1.0
-    if distance > st.control_route_tolerance_m or found < 0.0 or found > end:
+    if distance > st.control_route_tolerance_m or s_m < 0.0 or s_m > end:
         st.input_state = OFF_ROUTE
         if st.localization != XY:
-            st.s_m = found
+            # An arc length off the route is still one: recorder and outputs follow it over the end.
+            st.s_m = s_m
         return
     st.input_state = INPUT_OK
-    if st.localized != 0 and abs(found - expected) > st.control_position_jump_max_m:
+    if st.localized != 0 and abs(s_m - expected) > st.control_position_jump_max_m:
         st.input_state = POSITION_JUMP
-    st.s_m = found
+    st.s_m = s_m
     st.localized = 1
     st.valid_ns = st.time_ns
 

@@ -53,4 +53,5 @@ TRANSITIONS: Final = np.array(
 
 def next_mode(mode: int, event: int) -> int:
     """Return the mode that ``event`` leads to from ``mode``."""
+    # A plain int also in CPython: NumPy's would spread through the record and slow every step down.
     return int(TRANSITIONS[mode, event])

@@ -75,7 +75,7 @@ def plan_profile(st: PlannerSettings, caps: Floats, speed: Floats, work: Work) -
     bound_slopes(speed, 2.0 * st.planner_accel_max_mps2, -2.0 * st.planner_accel_min_mps2)
     if st.planner_jerk_max_mps3 > 0.0:
         bend = work.a
-        for i in range(len(bend)):
+        for i in range(len(bend)):  # speeds are above 0: so are limits and curve speeds
             bend[i] = 2.0 * st.planner_jerk_max_mps3 / sqrt(speed[i])
         round_valleys(
             speed, bend, 2.0 * st.planner_accel_max_mps2, -2.0 * st.planner_accel_min_mps2
@@ -134,6 +134,7 @@ def round_peaks(b: Floats, bend: Floats, stack: Floats, lifted: Floats) -> None:
 
 def _is_above(y: Floats, p: int, q: int, r: int) -> bool:
     """Tell whether point ``q`` lies on or above the chord from ``p`` to ``r`` (p < q < r)."""
+    # Multiplied out: a division per comparison would cost and round.
     return (y[q] - y[p]) * (r - q) >= (y[r] - y[q]) * (q - p)
 
 

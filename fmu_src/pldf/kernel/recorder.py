@@ -95,11 +95,13 @@ def _driver_took_over(st: PldfState) -> bool:
 def _open_intervention(st: PldfState, trace: TraceArrays) -> None:
     gap_ns = st.time_ns - st.intervention_end_ns
     st.intervening = 1
+    # Pedal bounce: the gap belongs to the intervention after all, so its time is charged late, for
+    # the combined rate only what no set-speed offset has covered already.
     if st.intervention_end_ns >= 0 and gap_ns < 1e9 * st.learning_pedal_gap_s:
         st.pedal_ns += gap_ns
         st.combined_ns += st.gap_uncovered_ns
         _extend(st, trace)
-    elif st.drive_interventions < len(trace.start_m):
+    elif st.drive_interventions < len(trace.start_m):  # there is room for one per metre
         st.drive_interventions += 1
         trace.start_m[st.drive_interventions - 1] = _furthest(st)
         _extend(st, trace)
@@ -110,6 +112,7 @@ def _extend(st: PldfState, trace: TraceArrays) -> None:
 
 
 def _furthest(st: PldfState) -> float:
+    # A car that rolls back has not left what it drove through before.
     return st.s_m if st.samples == 0 else max(st.s_m, st.knot_s_m)
 
 
@@ -118,7 +121,7 @@ def _advance_knots(st: PldfState, route: RouteArrays, trace: TraceArrays) -> Non
     time_s = SECOND_NS * st.time_ns
     speed = st.vehicle_speed_mps
     if st.samples == 0:
-        st.from_s_m = st.s_m - 1e-9
+        st.from_s_m = st.s_m - 1e-9  # so that a drive that begins at a node records this node
         st.from_speed_mps = speed
         st.from_time_s = time_s
         st.knot_s_m = st.s_m

@@ -51,6 +51,7 @@ def update_request(
     """Move the request over one communication step, in equal internal steps of at most 10 ms."""
     substeps = substep_count(step_s)
     change = st.control_request_jerk_max_mps3 * step_s / substeps
+    # Each part aims at where the car then is, so the result hardly depends on the importer's step.
     for k in range(substeps):
         wanted = _wanted(st, route, profile, step_s * k / substeps)
         wanted = min(max(wanted, st.control_request_min_mps2), st.control_request_max_mps2)
@@ -61,6 +62,7 @@ def update_request(
 
 def _wanted(st: PldfState, route: RouteArrays, profile: ProfileArrays, ahead_s: float) -> float:
     """Return the acceleration to aim at, ``ahead_s`` after the sample of the inputs."""
+    # The gas pedal adds to the request; and of a car that is not known nothing can be asked.
     if st.mode in (GAS_OVERRIDE, FAULT) or st.input_state == INPUT_INVALID:
         return 0.0
     acceleration = st.vehicle_acceleration_mps2
@@ -69,6 +71,8 @@ def _wanted(st: PldfState, route: RouteArrays, profile: ProfileArrays, ahead_s: 
     start = max(st.vehicle_speed_mps, 0.0)
     speed = max(start + acceleration * ahead_s, 0.0)
     s_m = st.s_m + 0.5 * (start + speed) * ahead_s
+    # Recovery is bounded apart from the profile's own acceleration: far from the profile the car
+    # comes back comfortably, on it the full slope is followed.
     error = target_speed(st, route, profile, s_m) - speed
     correction = st.control_speed_gain_per_s * error
     correction = min(correction, st.control_recovery_accel_max_mps2)
