@@ -7,8 +7,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Final, NamedTuple
 
+from pldf.cosim.drive_limits import STEP_S
 from pldf.cosim.fmu import Fmu, Place, Slave
-from pldf.cosim.master import STEP_S, Values, connections, unpacked
+from pldf.cosim.master import connections, unpacked
+from pldf.cosim.values import Values
 from pldf.roads import packed_route
 from pldf.study.phases import PHASES, Setting, values_of
 

@@ -104,8 +104,8 @@ def drive(  # noqa: PLR0913 - the options of a drive, all by name
     """
     from .build.first_use import fmus_to_drive
     from .cosim import master, settable
+    from .cosim.kinds import USUAL_FOLDER
     from .cosim.road_values import road_values
-    from .cosim.which_fmus import USUAL_FOLDER
     from .roads import open_road
     from .study.phases import PHASES, DriveSetting, values_of
 

@@ -15,10 +15,10 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import fields
 from functools import cache
+from importlib.metadata import version
 from types import FunctionType, ModuleType
 from typing import Any, Final
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -86,6 +86,8 @@ def compile_modules(modules: Sequence[ModuleType], calling: Namespace | None = N
 
     Raises ValueError when two modules define functions of the same name.
     """
+    import numba  # noqa: PLC0415 - slow to import, and who only asks for a digest needs none
+
     calling = calling or {}
     shared: dict[str, Any] = {**calling}
     owners: dict[str, str] = {}
@@ -114,6 +116,8 @@ def _cache_folder(modules: Sequence[ModuleType]) -> Iterator[bool]:
     Numba itself only notices changes in the file of the outermost function, not in its callees.
     """
     folder = user_cache() / f"kernel-{digest(modules)}"
+    import numba  # noqa: PLC0415 - as above
+
     config: Any = numba.config
     before = config.CACHE_DIR
     try:
@@ -130,7 +134,7 @@ def _cache_folder(modules: Sequence[ModuleType]) -> Iterator[bool]:
 
 def digest(modules: Sequence[ModuleType]) -> str:
     """Return 16 hexadecimal digits of what compiled functions depend on: source, numba, options."""
-    sources = hashlib.sha256(f"{numba.__version__} {OPTIONS}".encode())
+    sources = hashlib.sha256(f"{version('numba')} {OPTIONS}".encode())
     for module in modules:
         sources.update(inspect.getsource(module).encode())
     return sources.hexdigest()[:16]

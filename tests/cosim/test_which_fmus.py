@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from pldf import cli
 from pldf.build_version import build_version, native_making
-from pldf.cosim import which_fmus
+from pldf.cosim import kinds, which_fmus
 from pldf.cosim.which_fmus import Choice, choose_fmus
 from pldf.instance import ModelError
 
@@ -45,7 +45,7 @@ def elsewhere(monkeypatch: pytest.MonkeyPatch) -> Make:
     return lambda: monkeypatch.setattr(which_fmus, "PLATFORM", "x86_64-windows")
 
 
-def refused(folder: Path, kind: which_fmus.Kind | None = None) -> str:
+def refused(folder: Path, kind: kinds.Kind | None = None) -> str:
     with pytest.raises(ModelError) as caught:
         choose_fmus(folder, kind)
     return str(caught.value)
@@ -96,7 +96,7 @@ def test_native_ones_of_older_sources_are_passed_over(built: Path, stale: Make) 
 
 def test_older_sources_are_no_hindrance_for_who_asks_for_them(built: Path, stale: Make) -> None:
     stale()
-    for kind in which_fmus.KINDS:
+    for kind in kinds.KINDS:
         chosen, _, (note,) = choose_fmus(built, kind)
         assert chosen == kind
         assert "made from other sources than those installed; build them anew" in note
@@ -148,7 +148,7 @@ def test_the_usual_folder_is_not_named_in_the_command(
     stale()
     shutil.copytree(built, tmp_path / "dist")
     monkeypatch.chdir(tmp_path)
-    _, _, notes = choose_fmus(which_fmus.USUAL_FOLDER)
+    _, _, notes = choose_fmus(kinds.USUAL_FOLDER)
     assert [note.rsplit("with ", 1)[1] for note in notes] == [
         "'pldf build --native'",
         "'pldf build'",
@@ -164,7 +164,7 @@ def test_the_fmus_built_here_are_up_to_date(built: Path) -> None:
             assert described.generationTool.endswith(f", native {native_making()}")
 
 
-@pytest.mark.parametrize("kind", [None, *which_fmus.KINDS])
+@pytest.mark.parametrize("kind", [None, *kinds.KINDS])
 def test_a_drive_says_what_drives(
     kind: str | None,
     built: Path,

@@ -11,8 +11,9 @@ from typing import Final
 
 from ..build_version import build_version
 from ..cache import CACHE_VARIABLE, user_cache
+from ..cosim.kinds import NATIVE_FOLDER, USUAL_FOLDER, Kind
 from ..cosim.master import PARTS
-from ..cosim.which_fmus import NATIVE_FOLDER, USUAL_FOLDER, Choice, Kind, choose_fmus
+from ..cosim.which_fmus import Choice, choose_fmus
 from ..instance import ModelError
 
 _DIGITS: Final = 10

@@ -12,8 +12,10 @@ from typing import Final
 
 from fmpy.ssp.ssd import read_ssd  # type: ignore[import-untyped]
 
-from ..cosim.fmu import Fmu, Value
-from ..cosim.master import PARTS, STEP_S, connections
+from ..cosim.drive_limits import STEP_S
+from ..cosim.fmu import Fmu
+from ..cosim.master import PARTS, connections
+from ..cosim.values import Value
 from ..instance import ModelError
 from ..kernel.codes import LEARN_FAITHFUL
 from ..roads import packed_route

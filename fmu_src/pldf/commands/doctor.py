@@ -133,7 +133,8 @@ def _fmus(findings: Findings) -> None:
     try:
         from ..build import first_use  # noqa: PLC0415 - brings what may be broken
         from ..build_version import build_version  # noqa: PLC0415
-        from ..cosim.which_fmus import USUAL_FOLDER, choose_fmus  # noqa: PLC0415
+        from ..cosim.kinds import USUAL_FOLDER  # noqa: PLC0415
+        from ..cosim.which_fmus import choose_fmus  # noqa: PLC0415
 
         findings.add("sources", build_version())
         if first_use.nobody_built():

@@ -9,9 +9,9 @@ from typing import Final
 
 import numpy as np
 
-from ..cosim.fmu import Value
 from ..cosim.master import Drive, drive
 from ..cosim.road_values import road_values
+from ..cosim.values import Value
 from ..instance import ModelError
 from ..kernel.codes import LEARN
 from ..kernel.units import KMH_PER_MPS

@@ -10,9 +10,9 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Final
 
-from ..cosim.which_fmus import USUAL_FOLDER
+from ..cosim.kinds import USUAL_FOLDER
 from ..study.results import DRIVES, PARTICIPANTS, StudyResults
-from ..study.runner import in_processes, on_cluster, run_missing
+from ..study.runner import in_processes, on_cluster, prepare_processes, run_missing
 from ..study.study_file import ONE_DRIVER, Study, changes_of, read_study, study_path
 from ..study.toml_file import Key
 from ..study.unit import Job, ParticipantResult
@@ -82,6 +82,8 @@ def run(options: argparse.Namespace) -> None:
     study = _study(options)
     if (options.fmu and options.scheduler) or (options.scheduler and study.through == "fmus"):
         options.refuse("FMUs drive on this machine only, not with --scheduler")
+    if min(options.jobs, len(study.participants)) > 1 and not options.scheduler:
+        prepare_processes()
     through_fmus = options.fmu or study.through == "fmus"
     if options.fmus != USUAL_FOLDER and not through_fmus:
         options.refuse("--fmus needs --fmu: FILE is driven in process, with the same results")

@@ -10,16 +10,13 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import chdir
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, NamedTuple, cast
-
-from fmpy import extract, read_model_description  # type: ignore[import-untyped]
-from fmpy import fmi2 as fmi
-from fmpy.fmi1 import FMICallException  # type: ignore[import-untyped]
+from typing import Any, Final, cast
 
 from ..instance import Level, ModelError
 from ..kernel.signals import Causality, Enumeration, Kind, Signal
+from .values import FmuMessage, Value
 
-Value = float | int | str
+# ruff: noqa: PLC0415 - fmpy is slow to import, and most studies drive no FMUs
 
 _LEVELS: Final[tuple[Level, ...]] = ("info", "warning", "error", "error", "error", "info")
 _WRAPPERS_NOTE: Final = "Fatal py exception"  # says only that pythonfmu caught something
@@ -28,14 +25,6 @@ _C_TYPES: Final[dict[str, Any]] = {
     "Integer": ctypes.c_int32,
     "Boolean": ctypes.c_int32,
 }
-
-
-class FmuMessage(NamedTuple):
-    """A message of an FMU's logger; ``fmu`` is the name of the model."""
-
-    fmu: str
-    level: Level
-    text: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,9 +88,11 @@ def unpack(path: Path, folder: Path) -> Fmu:
     Raises:
         ModelError: it is not there or not an FMU for co-simulation.
     """
+    import fmpy  # type: ignore[import-untyped]
+
     description = describe(path)
     try:
-        extract(str(path), unzipdir=str(folder))
+        fmpy.extract(str(path), unzipdir=str(folder))
     except Exception as error:  # fmpy raises bare Exception for all that is wrong with an archive
         raise _unusable(path, error) from error
     items = {
@@ -121,8 +112,10 @@ def describe(path: Path) -> Any:
             f"{path}: no such FMU; build the FMUs with 'pldf build' or name their folder "
             "with --fmus"
         )
+    import fmpy
+
     try:
-        description = read_model_description(str(path))
+        description = fmpy.read_model_description(str(path))
     except Exception as error:  # as above
         raise _unusable(path, error) from error
     if description.coSimulation is None:
@@ -173,6 +166,8 @@ class Slave:
         self._set, self.inputs = self._batches(inputs)
         self._get, self.outputs = self._batches(s.name for s in fmu.named("output"))
         self.name: str = fmu.description.modelName
+        from fmpy import fmi2 as fmi
+
         self._slave = self._load(part)
         self._callbacks = fmi.fmi2CallbackFunctions()
         self._callbacks.logger = fmi.fmi2CallbackLoggerTYPE(self._hear)
@@ -223,6 +218,8 @@ class Slave:
             self._slave.component = None
 
     def _load(self, part: str) -> Any:
+        from fmpy import fmi2 as fmi
+
         model = self.fmu.description
         try:
             with chdir("."):  # fmpy stays in the library's folder when that cannot be loaded
@@ -238,7 +235,11 @@ class Slave:
     def _call(self, call: Callable[..., Any], *arguments: Any, **named: Any) -> None:
         try:
             call(*arguments, **named)
-        except FMICallException as problem:
+        except Exception as problem:
+            from fmpy.fmi1 import FMICallException  # type: ignore[import-untyped]
+
+            if not isinstance(problem, FMICallException):
+                raise
             errors = [message.text for message in self.messages if message.level == "error"]
             text = errors[-1] if errors else str(problem)
             raise ModelError(f"{self.name}: {text}") from None

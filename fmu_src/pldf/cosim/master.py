@@ -19,10 +19,11 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ..instance import ModelError
-from ..kernel.units import KMH_PER_MPS
 from ..recordings.recording import COLUMNS, Recording
-from .fmu import BufferElement, Fmu, FmuMessage, Slave, Value, unpack
+from .drive_limits import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS, STEP_S
+from .fmu import BufferElement, Fmu, Slave, unpack
 from .native_files import readable_values
+from .values import FmuMessage, Values
 
 # The vehicle comes first: the function plans its first outputs from where the vehicle is.
 PARTS: Final = {
@@ -30,11 +31,6 @@ PARTS: Final = {
     "driver": "ScriptedDriver",
     "pldf": "AdaptivePLDF",
 }
-STEP_S: Final = 0.01
-STANDSTILL_MPS: Final = 0.1
-STANDSTILL_MAX_S: Final = 60.0
-# Slower than this on average, a drive is given up.
-SLOWEST_MPS: Final = 10.0 / KMH_PER_MPS
 _PROGRESS_STEPS: Final = 200
 
 ARRIVED: Final = "reached the end of the route"
@@ -54,7 +50,6 @@ _SEEN: Final = {
     "limit_mps": ("pldf", "limit_mps"),
 }
 
-Values = Mapping[str, Mapping[str, Value]]
 Link = tuple[BufferElement, BufferElement]
 Rows = list[list[float]]
 

@@ -11,8 +11,9 @@ from typing import Final
 from vehicle_models.driver_script import read_script, script_arrays
 
 from ..roads import read_route
-from .fmu import Fmu, Value
+from .fmu import Fmu
 from .prepared import SUFFIX, prepared_route, prepared_script
+from .values import Value
 
 
 def _route(path: Path) -> bytes:

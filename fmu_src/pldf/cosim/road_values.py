@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..roads import Road, fingerprint, write_route_csv
-from .fmu import Value
+from .values import Value
 
 
 def road_values(road: Road, folder: Path) -> dict[str, Value]:

@@ -8,8 +8,9 @@ from typing import Final
 
 from ..instance import ModelError
 from ..settings import Given, parameter_value
-from .fmu import Fmu, Value
+from .fmu import Fmu
 from .master import connections
+from .values import Value
 
 _INTEGER_MAX: Final = 2**31 - 1  # of an FMI Integer
 _NEAR_MAX: Final = 3

@@ -6,21 +6,17 @@ import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Literal, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import fmpy  # type: ignore[import-untyped]
 
 from ..build_version import build_version, native_making
 from ..instance import ModelError
 from .fmu import describe
+from .kinds import NATIVE_FOLDER, USUAL_FOLDER, Kind
 from .master import PARTS
 from .platforms import TARGETS
 
-Kind = Literal["native", "python"]
-KINDS: Final[tuple[Kind, ...]] = ("native", "python")
-# Where ``pldf build`` puts the native FMUs: in the folder of the Python ones.
-NATIVE_FOLDER: Final = "native"
-USUAL_FOLDER: Final = Path("dist")
 PLATFORM: Final[str] = fmpy.platform_tuple
 
 _STALE: Final = "made from other sources than those installed"

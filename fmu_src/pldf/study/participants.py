@@ -8,8 +8,8 @@ from typing import Final
 
 from vehicle_models.driver_state import DriverState
 
-from ..cosim.fmu import FmuMessage, Value
-from ..cosim.master import STEP_S
+from ..cosim.drive_limits import STEP_S
+from ..cosim.values import FmuMessage, Value
 from ..kernel.signals import Signal, signals_of
 from ..profiles.store import Iteration
 from ..recordings.recording import Recording

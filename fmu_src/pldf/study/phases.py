@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from ..cosim.fmu import Value
-from ..cosim.master import Values
+from ..cosim.values import Value, Values
 from ..kernel.codes import LEARN_FAITHFUL, LEARN_OFF
 from ..roads import Route
 from ..route_facts import route_facts

@@ -12,10 +12,10 @@ import json
 import platform
 import shutil
 from collections.abc import Mapping
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final
 
-import numba
 import numpy as np
 
 from .. import __version__
@@ -29,7 +29,7 @@ from ..roads import fingerprint, route_arrays
 from .drive_row import COLUMNS
 from .participants import Participant
 from .participants_file import participants_csv
-from .simulation import COMPILED_MODULES, prepared
+from .simulation import COMPILED_MODULES, function_and_vehicle
 from .study_file import Study
 from .unit import ParticipantResult
 
@@ -128,8 +128,8 @@ class StudyResults:
 
 def _versions(study: Study, fmus: Mapping[str, Fmu] | None) -> bytes:
     """Return what the results depend on beside the study file, as JSON."""
-    simulation = prepared(study.settings)
-    models: dict[str, Instance[Any]] = {"pldf": simulation.function, "vehicle": simulation.vehicle}
+    function, vehicle = function_and_vehicle(study.settings)
+    models: dict[str, Instance[Any]] = {"pldf": function, "vehicle": vehicle}
     route = hashlib.sha256()
     for column in route_arrays(study.settings.route):
         route.update(np.asarray(column).tobytes())
@@ -140,7 +140,7 @@ def _versions(study: Study, fmus: Mapping[str, Fmu] | None) -> bytes:
         "source": digest(COMPILED_MODULES),
         "python": platform.python_version(),
         "numpy": np.__version__,
-        "numba": numba.__version__,
+        "numba": version("numba"),
         "machine": platform.machine(),
         "route": study.settings.route.name,
         "route_fingerprint": fingerprint(study.settings.route),

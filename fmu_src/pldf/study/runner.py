@@ -5,14 +5,16 @@ Results do not depend on where or in which order participants are driven. Only t
 
 from __future__ import annotations
 
+import multiprocessing
 import signal
+import sys
 from collections.abc import Callable, Generator
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
 from importlib import import_module
 from itertools import islice
-from multiprocessing import get_context
+from multiprocessing import forkserver
 from typing import Any, Final
 
 from ..instance import ModelError
@@ -22,6 +24,10 @@ from .simulation import compile_all
 from .through_fmus import Watch
 from .unit import Job, ParticipantResult, do_unit
 
+# Processes are forked from one that has the machine code ready. Not on macOS, whose own libraries
+# do not like it, and Windows cannot.
+_CAN_FORK: Final = sys.platform not in ("win32", "darwin")
+_WARM: Final = "pldf.study.warm"
 # Participants handed to each process ahead of time.
 _AHEAD: Final = 3
 # How long a scheduler may take to answer.
@@ -65,11 +71,20 @@ def in_processes(jobs: int, watch: Watch = lambda _: None) -> Run:
     return run
 
 
+def prepare_processes() -> None:
+    """Begin to get ready what processes need, beside what this process does until then."""
+    if _CAN_FORK:
+        multiprocessing.set_forkserver_preload([_WARM])
+        forkserver.ensure_running()
+
+
 def _in_pool(job: Job, participants: list[Participant], count: int) -> ResultStream:
-    compile_all(job.settings)  # once, for all processes to load
-    pool = ProcessPoolExecutor(
-        count, mp_context=get_context("spawn"), initializer=_begin, initargs=(job,)
-    )
+    if _CAN_FORK:
+        prepare_processes()
+    else:
+        compile_all(job.settings)  # once, for all processes to load
+    context = multiprocessing.get_context("forkserver" if _CAN_FORK else "spawn")
+    pool = ProcessPoolExecutor(count, mp_context=context, initializer=_begin, initargs=(job,))
     try:
         waiting = iter(participants)
         pending = {pool.submit(_unit, one) for one in islice(waiting, _AHEAD * count)}

@@ -22,8 +22,8 @@ from vehicle_models.vehicle import LongitudinalVehicle
 from vehicle_models.wish_kernel import WishArrays
 
 from ..compiled import KERNEL_MODULES, Namespace, compile_modules, kernel, pack, unpack
-from ..cosim.fmu import Value
-from ..cosim.master import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS
+from ..cosim.drive_limits import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS
+from ..cosim.values import Value
 from ..function import DrivingFunction, next_iteration
 from ..instance import Instance, ModelError, zeros
 from ..kernel.arrays import FloatArray, NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
@@ -80,6 +80,18 @@ def machine_code() -> Namespace:
     return {**called, **compile_modules((loop,), called)}
 
 
+def function_and_vehicle(settings: StudySettings) -> tuple[DrivingFunction, LongitudinalVehicle]:
+    """Return driving function and vehicle with the parameters of the study.
+
+    The vehicle starts with the base profile's speed, unless the study says otherwise.
+    """
+    function, vehicle = DrivingFunction(), LongitudinalVehicle()
+    set_parameters(function, settings.function)
+    start = {"start_speed_mps": float(route_facts(settings.route).base_mps[0])}
+    set_parameters(vehicle, {**start, **settings.vehicle})
+    return function, vehicle
+
+
 class Simulation:
     """A road and a driving function, planned once for any number of participants."""
 
@@ -88,11 +100,7 @@ class Simulation:
         self.code = machine_code()
         self.route = RouteArrays(*(np.array(column) for column in route_arrays(settings.route)))
         self.nodes = len(self.route.limit_mps)
-        self.function = DrivingFunction()
-        set_parameters(self.function, settings.function)
-        self.vehicle = LongitudinalVehicle()
-        start = {"start_speed_mps": float(route_facts(settings.route).base_mps[0])}
-        set_parameters(self.vehicle, {**start, **settings.vehicle})
+        self.function, self.vehicle = function_and_vehicle(settings)
         self.base = zeros(ProfileArrays, self.nodes)
         st = pack(self.function.record)
         self.code["plan_base"](st[0], self.route, self.base, zeros(Work, self.nodes))

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Final, Literal
 import msgspec
 from msgspec import Meta, Struct
 
-from ..cosim.master import STEP_S
+from ..cosim.drive_limits import STEP_S
 from ..kernel.signals import Signal
 from ..kernel.units import KMH_PER_MPS
 from .phases import SEED_MAX

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from ..cosim.fmu import Fmu, FmuMessage
+from ..cosim.fmu import Fmu
+from ..cosim.values import FmuMessage
 from ..profiles.profile_file import encode
 from ..profiles.store import ProfileStore
 from ..recordings.recording import recording_csv

@@ -9,12 +9,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
-from ...build.first_use import fmus_to_drive
 from ...cosim import settable
-from ...cosim.fmu import Fmu, FmuMessage
-from ...cosim.master import STEP_S, unpacked
+from ...cosim.drive_limits import STEP_S
+from ...cosim.fmu import Fmu
+from ...cosim.kinds import KINDS, NATIVE_FOLDER, USUAL_FOLDER
+from ...cosim.master import unpacked
 from ...cosim.settable import Chosen
-from ...cosim.which_fmus import KINDS, NATIVE_FOLDER, USUAL_FOLDER
+from ...cosim.values import FmuMessage
 from ...instance import ModelError
 from .road import Parser, add_road
 from .settings import split_settings
@@ -60,6 +61,8 @@ def add_fmu(parser: argparse.ArgumentParser, usual: str) -> None:
 @contextmanager
 def chosen_fmus(options: argparse.Namespace) -> Iterator[dict[str, Fmu]]:
     """Unpack the FMUs that ``--fmus`` and ``--fmu`` ask for; say which they are."""
+    from ...build.first_use import fmus_to_drive  # noqa: PLC0415 - brings all that builds
+
     choice = fmus_to_drive(options.fmus, options.fmu)
     for note in choice.notes:
         print(f"pldf: {note}", file=sys.stderr)
