@@ -79,10 +79,14 @@ def kernel() -> Namespace:
     return compile_modules(KERNEL_MODULES)
 
 
-def compile_modules(modules: Sequence[ModuleType], calling: Namespace | None = None) -> Namespace:
+def compile_modules(
+    modules: Sequence[ModuleType], calling: Namespace | None = None, *, inline: bool = False
+) -> Namespace:
     """Compile every function defined in ``modules`` (lazily, cached on disk); return them by name.
 
-    ``calling`` holds what was compiled before and is called by ``modules``.
+    ``calling`` holds what was compiled before and is called by ``modules``. ``inline`` copies every
+    function into its callers: a loop over steps is then twice as fast, since LLVM must assume of a
+    call that it changes every record; the results stay the same to the bit.
 
     Raises ValueError when two modules define functions of the same name.
     """
@@ -101,21 +105,21 @@ def compile_modules(modules: Sequence[ModuleType], calling: Namespace | None = N
                 shared[name] = value
     functions = {name: shared[name] for name in owners}
     called = {sys.modules[f.py_func.__module__] for f in calling.values()}  # type: ignore[attr-defined]
-    with _cache_folder([*modules, *sorted(called, key=lambda m: m.__name__)]) as cached:
+    with _cache_folder([*modules, *sorted(called, key=lambda m: m.__name__)], inline) as cached:
         for name, function in functions.items():
             copy = FunctionType(function.__code__, shared, name, function.__defaults__)
             copy.__module__ = function.__module__
-            shared[name] = numba.njit(copy, cache=cached, **OPTIONS)
+            shared[name] = numba.njit(copy, cache=cached, forceinline=inline, **OPTIONS)
     return {name: shared[name] for name in functions}
 
 
 @contextmanager
-def _cache_folder(modules: Sequence[ModuleType]) -> Iterator[bool]:
+def _cache_folder(modules: Sequence[ModuleType], inline: bool) -> Iterator[bool]:
     """Point numba's cache to a folder named after the source of all modules together.
 
     Numba itself only notices changes in the file of the outermost function, not in its callees.
     """
-    folder = user_cache() / f"kernel-{digest(modules)}"
+    folder = user_cache() / f"kernel-{digest(modules)}{'-inline' if inline else ''}"
     import numba  # noqa: PLC0415 - as above
 
     config: Any = numba.config
