@@ -17,12 +17,13 @@ _FIELDS: Final = {signal.name: field for field, signal in DRIVER_SIGNALS.items()
 def _column(signal: Signal) -> Column:
     if signal.kind == "Boolean":
         return Column(signal.name, "flag", needed=False)
+    low, high = signal.range
     return Column(
         signal.name,
         "number" if signal.kind == "Real" else "whole",
         unit=signal.unit,
-        low=float(signal.low or 0),
-        high=float(signal.high or 0),
+        low=low,
+        high=high,
         needed=False,
     )
 

@@ -108,7 +108,7 @@ def _type_of(signal: Signal) -> Any:
         return Literal[signal.enumeration.items]
     if signal.kind == "Boolean":
         return bool
-    low, high = float(signal.low or 0.0), float(signal.high or 0.0)
+    low, high = signal.range
     if signal.kind == "Integer":
         about = f"a whole number from {int(low)} to {int(high)}"
         return Annotated[int, Meta(ge=int(low), le=int(high), description=about)]
