@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from native_drives import CASES
 from native_hosts import MODELS, ON, PLATFORMS, Hosts, compiled_host, missing
 
 STEPS = "20000"
@@ -37,6 +38,19 @@ def test_inputs_and_parameters_that_make_no_sense(
 ) -> None:
     file = described(hosts, platform, version, model, tmp_path)
     hosts.run(platform, "hostile", file, STEPS, cwd=tmp_path)
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(("platform", "version"), ON)
+def test_reading_and_setting_again_change_nothing(
+    hosts: Hosts, platform: str, version: int, case: str, tmp_path: Path
+) -> None:
+    """Of two drives one is disturbed between the steps (``native_host/reads.c``)."""
+    fmu = hosts.fmu(platform, version, CASES[case].model)
+    settings = CASES[case].settings
+    file = fmu.described(PLATFORMS[platform], tmp_path / "fmu.txt", settings)
+    CASES[case].script().tofile(tmp_path / "script")
+    hosts.run(platform, "reads", file, tmp_path / "script", cwd=tmp_path)
 
 
 def test_fmi_2_and_fmi_3_in_one_process(hosts: Hosts, tmp_path: Path) -> None:

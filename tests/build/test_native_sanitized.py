@@ -7,12 +7,11 @@ import os
 import shutil
 import subprocess
 import sys
-import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
 import pytest
+from hostile_files import damaged
 from native_drives import CASES, by_source
 from native_hosts import HEADERS, MODELS, PLATFORMS, WARNINGS, Hosts, Value, host_sources, missing
 from pldf.build import fmus as fmu_build
@@ -41,7 +40,7 @@ class Sanitized:
             missing("gcc is missing: apt-get install gcc libc6-dev")
         self.hosts, self.folder = hosts, folder
         self.program = folder / "host"
-        libraries = ["-ldl", "-lm"]
+        libraries = ["-ldl", "-lm", "-lpthread"]
         command = [*GCC, "-std=gnu11", *host_sources(), "-o", str(self.program), *libraries]
         subprocess.run(command, check=True)
         for model in MODELS:
@@ -109,42 +108,6 @@ def test_life_cycle_order_of_calls_instances_and_states(
 
 
 # Files
-
-
-def damaged(good: bytes) -> Iterator[bytes]:
-    """Yield variants of a profile or a prepared file: other bytes, lengths and numbers.
-
-    The checksum of most is right, so that what stands behind it is tested.
-    """
-    rng = np.random.default_rng(3)
-    body = good[:-15]
-    head = body.index(b"\nend")
-    yield from (b"", good[:-1], good[:-9], good[:head], good + good, good[:100])
-    for number in range(80):
-        changed = bytearray(body)
-        at = rng.integers(0, len(body) if number % 2 else head)
-        changed[at] = rng.choice([0, 10, 32, 48, 57, 127, 255, changed[at] ^ 1])
-        yield checked(bytes(changed))
-    for line in body[:head].split(b"\n")[1:]:
-        name = line.split(b" ")[0]
-        for number in (
-            b"0",
-            b"-1",
-            b"1",
-            b"2",
-            b"07",
-            b"999999",
-            b"10000000",
-            b"9" * 19,
-            b"9" * 99,
-        ):
-            yield checked(body.replace(line, name + b" " + number, 1))
-        yield checked(body.replace(line + b"\n", b"", 1))
-
-
-def checked(body: bytes) -> bytes:
-    """Return the body with its checksum behind it."""
-    return body + b"crc32 %08x\n" % zlib.crc32(body)
 
 
 def test_damaged_profiles(sanitized: Sanitized, tmp_path: Path) -> None:

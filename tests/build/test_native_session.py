@@ -17,7 +17,7 @@ from fmi_host import Host, Slave
 from pldf.function import DrivingFunction
 from pldf.instance import ModelError
 from pldf.kernel.state import PldfState
-from pldf.profiles.profile_file import decode
+from pldf.profiles.profile_file import decode, encode
 from pldf.roads import packed_route
 
 pytest.importorskip("ziglang", reason="needs the extra: pip install -e .[native]")
@@ -250,6 +250,38 @@ def test_a_drive_is_learned_once_and_says_so(slave: Slave, tmp_path: Path) -> No
     assert [text for text in slave.texts("logStatusWarning") if "a second time" in text]
     (path,) = tmp_path.glob("*.pldf")
     assert len(decode(path.read_bytes(), path.name).iterations) == 1
+
+
+@pytest.mark.parametrize("end", ["reset", "freeInstance"])
+def test_a_drive_that_is_not_terminated_is_learned_too(
+    host: Host, tmp_path: Path, end: str
+) -> None:
+    slave = host.instantiate()
+    drive(slave.start(learn=1, profile_store=str(tmp_path)), 0, 30)
+    assert not list(tmp_path.iterdir())
+    getattr(slave.fmu, end)()
+    (path,) = tmp_path.glob("*.pldf")
+    assert len(decode(path.read_bytes(), path.name).iterations) == 1
+
+
+def test_a_history_of_equal_length_but_other_values_is_a_conflict(
+    host: Host, slave: Slave, tmp_path: Path
+) -> None:
+    drive(slave.start(learn=1, profile_store=str(tmp_path)), 0, 30)
+    assert terminated(slave) == OK
+    (path,) = tmp_path.iterdir()
+    profile = decode(path.read_bytes(), path.name)
+    (first,) = profile.iterations
+    other = encode(replace(profile, iterations=(replace(first, learned_mps=profile.base_mps / 2),)))
+    second = host.instantiate()
+    drive(second.start(learn=1, profile_store=str(tmp_path)), 0, 30)
+    path.write_bytes(other)
+    assert terminated(second) == WARNING
+    assert "changed by another process" in second.texts("logStatusWarning")[-1]
+    assert path.read_bytes() == other
+    (kept,) = tmp_path.glob("*.conflict-1.pldf")
+    assert len(decode(kept.read_bytes(), kept.name).iterations) == 2
+    second.free()
 
 
 # Time

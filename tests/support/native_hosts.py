@@ -227,7 +227,7 @@ def native_archives(factory: pytest.TempPathFactory, platform: str) -> Path:
 def compiled_host(platform: Platform, path: Path, main: str = "main", *flags: str) -> None:
     """Compile the C host with the program in ``main`` for a platform."""
     windows = TARGETS[platform.target].suffix == ".dll"
-    libraries = ["-lm"] if windows else ["-lm", "-ldl"]
+    libraries = ["-lm"] if windows else ["-lm", "-ldl", "-lpthread"]
     # As for FMUs: zig has then compiled its C library.
     how = ["-std=gnu11", "-O2", "-s", "-fPIC", *WARNINGS, f"-I{HEADERS}", *flags]
     command = zig(platform.target, *how, *host_sources(main), "-o", path, *libraries)
@@ -236,5 +236,5 @@ def compiled_host(platform: Platform, path: Path, main: str = "main", *flags: st
 
 def host_sources(main: str = "main") -> list[str]:
     """Return the sources of the C host with the program in ``main``."""
-    others = {"main", "quiet"} - {main}
+    others = {"main", "quiet", "recorded"} - {main}
     return [str(path) for path in sorted(SOURCES.glob("*.c")) if path.stem not in others]

@@ -129,6 +129,25 @@ def require_match(profile: StoredProfile, wanted: tuple[int, str, int], file: st
         _refuse(file, "line 4", f"{profile.nodes} nodes, but the route has {nodes}")
 
 
+class Column(NamedTuple):
+    """What may stand in a block: values from ``low`` to ``high``, ``whole`` numbers only or any."""
+
+    name: str
+    low: float
+    high: float
+    whole: bool
+
+
+# In the order of the blocks: the base profile, then those of an iteration.
+COLUMNS: Final = (
+    Column("base_mps", 0.0, SPEED_MAX_MPS, whole=False),
+    Column("learned_mps", 0.0, SPEED_MAX_MPS, whole=False),
+    Column("offset_mps", -SPEED_MAX_MPS, SPEED_MAX_MPS, whole=False),
+    Column("drive", 0.0, COUNT_MAX, whole=True),
+    Column("intervention", 0.0, COUNT_MAX, whole=True),
+)
+
+
 class _Header(NamedTuple):
     driver_id: int
     route: str
@@ -227,11 +246,11 @@ def _check_sum(data: bytes, file: str) -> None:
 
 
 def _column(data: bytes, head: _Header, block: int, file: str) -> FloatArray:
-    name, low, whole = _COLUMNS[0 if block == 0 else 1 + (block - 1) % 4]
+    name, low, high, whole = COLUMNS[0 if block == 0 else 1 + (block - 1) % 4]
     start = head.size + block * head.stride
     values = np.frombuffer(data, "<f8", head.nodes, start)
     with np.errstate(invalid="ignore"):  # a signalling NaN is as wrong as any other
-        good = (values >= low) & (values <= (COUNT_MAX if whole else SPEED_MAX_MPS))
+        good = (values >= low) & (values <= high)
         if whole:
             good &= np.floor(values) == values
     if not good.all():
@@ -245,20 +264,10 @@ def _column(data: bytes, head: _Header, block: int, file: str) -> FloatArray:
     return values.astype(np.float64, copy=False)
 
 
-# name, lowest value, whole numbers only; in the order of the blocks
-_COLUMNS: Final = (
-    ("base_mps", 0.0, False),
-    ("learned_mps", 0.0, False),
-    ("offset_mps", -SPEED_MAX_MPS, False),
-    ("drive", 0.0, True),
-    ("intervention", 0.0, True),
-)
-
-
 def _blocks(profile: StoredProfile) -> Iterator[tuple[str, FloatArray]]:
     yield "base_mps", profile.base_mps
     for iteration in profile.iterations:
-        for name, _, _ in _COLUMNS[1:]:
+        for name, *_ in COLUMNS[1:]:
             yield name, getattr(iteration, name)
 
 

@@ -25,7 +25,15 @@ from typing import Final
 
 import numpy as np
 
-from ..files.disk import folder_lock, free_name, read_file, reason, rename_file, replace_file
+from ..files.disk import (
+    folder_lock,
+    free_name,
+    make_folder,
+    read_file,
+    reason,
+    rename_file,
+    replace_file,
+)
 from ..instance import ModelError
 from .profile_file import FILE_MAX, decode, encode, require_match
 from .stored_profile import Iteration, ProfileRefused, StoredProfile
@@ -239,7 +247,7 @@ def _read(path: Path, wanted: tuple[int, str, int] | None = None) -> StoredProfi
 def _writing(path: Path, lock_timeout_s: float) -> Iterator[None]:
     """Make the folder of ``path`` and hold its lock; turn OSErrors into one line for the user."""
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
         with folder_lock(path.parent, lock_timeout_s):
             yield
     except OSError as error:

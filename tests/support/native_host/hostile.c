@@ -6,7 +6,7 @@
 
 static uint32_t noise = 5; /* the same on every platform, unlike rand() */
 
-static uint32_t dice(uint32_t sides) {
+uint32_t dice(uint32_t sides) {
     noise = 1664525u * noise + 1013904223u;
     return (noise >> 8) % sides;
 }

@@ -2,6 +2,8 @@
           native_host check DESCRIPTION DESCRIPTION (of another model)
           native_host versions DESCRIPTION DESCRIPTION (of one model)
           native_host hostile DESCRIPTION STEPS
+          native_host reads DESCRIPTION SCRIPT
+          native_host stack DESCRIPTION SCRIPT KILOBYTES
           native_host attempt DESCRIPTION [DESCRIPTION ...]
    Ends with status 0 if all is well, and says on stderr which line is not. */
 #include <string.h>
@@ -12,6 +14,8 @@ static void drive(const char *job, char **arguments, int count) {
     Fmu *fmu = fmu_open(arguments[0]);
     if (!strcmp(job, "replay")) replay(fmu, arguments[1], arguments + 2, count - 2);
     else if (!strcmp(job, "hostile")) hostile(fmu, atol(arguments[1]));
+    else if (!strcmp(job, "reads")) reads(fmu, arguments[1]);
+    else if (!strcmp(job, "stack")) little_stack(fmu, arguments[1], atol(arguments[2]));
     else attempt(fmu);
     fmu_close(fmu);
 }

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
-
-ENTRY_NAMES: Final = ("start", "adopt", "refresh", "step", "learn")
 
 
 @dataclass(frozen=True)
@@ -42,8 +40,9 @@ class NativeModel:
         record: class of the record.
         texts: class of the String parameters.
         modules: kernel modules that the entry points need.
-        entries: functions ``(record, block, nodes, rows, step_s)``, named as in ``ENTRY_NAMES``;
-            those that a model does not have are left out.
+        entries: functions ``(record, block, nodes, rows, step_s)``: ``start`` and ``step``;
+            ``refresh`` if outputs follow inputs without a step; ``adopt`` and ``learn`` if the
+            model learns.
         groups: named tuples of arrays per node, in the order of the block.
         kept: how many of the groups belong to the state; the others are work space.
         route: the group that is filled from the route.

@@ -1,15 +1,22 @@
-"""The generated part of the C code: a model's signals and layout as ``table.h`` and ``table.c``."""
+"""The generated part of the C code: ``table.h`` and ``table.c``.
+
+A model's signals and layout, and every code and size that Python defines and C needs too.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import fields
 from math import inf
 from typing import Any, Final
 
+from ...fmi.phases import Phase
+from ...fmi.session import STEP_MAX_S
 from ...kernel.arrays import NextArrays, ProfileArrays
+from ...kernel.codes import LOCALIZATION, PROFILE_STATUS
 from ...kernel.signals import Signal, signals_of
-from .model import ENTRY_NAMES, NativeModel
+from ...profiles.profile_file import ALIGNMENT, CHECKSUM_SIZE, COLUMNS, NODES_MAX, Column
+from .model import NativeModel
 
 _KINDS: Final = {
     "Real": "KIND_REAL",
@@ -18,7 +25,7 @@ _KINDS: Final = {
     "Boolean": "KIND_BOOLEAN",
     "String": "KIND_STRING",
 }
-# Field of the C struct, field of the record; for models that learn.
+# Field of the C struct, field of the record.
 _LEARNING_CELLS: Final = {
     "driver_id": "driver_id",
     "apply_learned": "apply_learned",
@@ -33,11 +40,23 @@ _LEARNING_CELLS: Final = {
 
 
 def header(model: NativeModel) -> str:
-    """Return ``table.h``: the sizes that the compiler must know."""
-    return (
-        f"enum {{ MODEL_CELLS = {len(fields(model.record))}, "
-        f"MODEL_TEXTS = {len(fields(model.texts))} }};\n"
-    )
+    """Return ``table.h``: the sizes and codes that the compiler must know."""
+    sizes = {
+        "MODEL_CELLS": len(fields(model.record)),
+        "MODEL_TEXTS": len(fields(model.texts)),
+        "ROUTE_COLUMNS": len(model.route._fields),
+        "ITERATION_COLUMNS": len(COLUMNS) - 1,
+        "NODES_MAX": NODES_MAX,
+        "ALIGNMENT": ALIGNMENT,
+        "CHECKSUM_SIZE": CHECKSUM_SIZE,
+    }
+    lines = [f"enum {{ {name} = {size} }};" for name, size in sizes.items()]
+    for prefix, codes in (("LOCALIZATION", LOCALIZATION), ("PROFILE_STATUS", PROFILE_STATUS)):
+        names = (f"{prefix}_{item}" for item in codes.items)
+        lines.append(f"enum {{ {', '.join(names)} }};")
+    lines.append(f"typedef enum {{ {', '.join(phase.name for phase in Phase)} }} Phase;")
+    lines.append(f"#define STEP_MAX_S {_number(STEP_MAX_S)}")
+    return "\n".join([*lines, ""])
 
 
 def source(model: NativeModel, guid: str, token: str) -> str:
@@ -45,19 +64,42 @@ def source(model: NativeModel, guid: str, token: str) -> str:
     cells = [f.name for f in fields(model.record)]
     lines = ['#include "model.h"', "", "#include <math.h>", "#include <stddef.h>", ""]
     lines += [f"Entry model_{entry};" for entry in model.entries]
-    lines += ["", "static const Variable variables[] = {"]
-    lines += [f"    {{{', '.join(_variable(s, model))}}}," for s in signals(model)]
-    lines += ["};", "", "static const Cell defaults[] = {"]
+    lines += _array(
+        "static const Variable variables", (_variable(s, model) for s in signals(model))
+    )
+    lines += ["", "static const Cell defaults[] = {"]
     lines += [f"    {_cell(f.default)}, /* {f.name} */" for f in fields(model.record)]
-    lines += ["};", "", "static const char *const watch_texts[] = {"]
-    lines += [f"    {_text(text)}," for text in model.watch.texts]
-    if model.bounds:
-        lines += ["};", "", "static const Bound bounds[] = {"]
-        lines += [f"    {{{', '.join(_references(pair, model))}}}," for pair in model.bounds]
-    lines += ["};", "", "const Model model = {"]
-    lines += [f"    .guid = {_text(guid)},", f"    .token = {_text(token)},"]
-    lines += [f"    .{name} = {value}," for name, value in _members(model, cells)]
-    return "\n".join([*lines, "};", ""])
+    lines += ["};"]
+    lines += _texts("static const char *const watch_texts", model.watch.texts)
+    lines += _texts("const char *const phase_names", (phase.name for phase in Phase))
+    lines += _array("const ProfileColumn profile_columns", map(_column, COLUMNS))
+    learning = "learn" in model.entries
+    if learning:
+        lines += _array("static const Bound bounds", (_references(p, model) for p in model.bounds))
+        lines += _struct("static const Learning learning", _learning(model, cells))
+    tokens = {"guid": _text(guid), "token": _text(token)}
+    pointer = {"learning": "&learning" if learning else "NULL"}
+    members = [*tokens.items(), *_members(model, cells), *pointer.items()]
+    return "\n".join([*lines, *_struct("const Model model", members), ""])
+
+
+def _array(name: str, rows: Iterable[Iterable[str]]) -> list[str]:
+    return ["", f"{name}[] = {{", *(f"    {{{', '.join(row)}}}," for row in rows), "};"]
+
+
+def _texts(name: str, texts: Iterable[str]) -> list[str]:
+    return ["", f"{name}[] = {{", *(f"    {_text(text)}," for text in texts), "};"]
+
+
+def _struct(name: str, members: Iterable[tuple[str, str]]) -> list[str]:
+    return ["", f"{name} = {{", *(f"    .{field} = {value}," for field, value in members), "};"]
+
+
+def _column(column: Column) -> Iterator[str]:
+    yield _text(column.name)
+    yield _number(column.low)
+    yield _number(column.high)
+    yield str(int(column.whole))
 
 
 def signals(model: NativeModel) -> tuple[Signal, ...]:
@@ -86,7 +128,7 @@ def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
     yield "variables", "variables"
     yield "variable_count", str(len(signals(model)))
     yield "defaults", "defaults"
-    for entry in ENTRY_NAMES:
+    for entry in ("start", "refresh", "step"):
         yield entry, f"model_{entry}" if entry in model.entries else "NULL"
     yield "node_columns", str(model.node_columns)
     yield "kept_columns", str(model.kept_columns)
@@ -105,13 +147,14 @@ def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
     yield "watch_time", str(0 if model.watch.once else cells.index("time_ns"))
     yield "watch_texts", "watch_texts"
     yield "watch_count", str(len(model.watch.texts))
-    yield "bounds", "bounds" if model.bounds else "NULL"
+
+
+def _learning(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
+    texts = [f.name for f in fields(model.texts)]
+    yield "adopt", "model_adopt"
+    yield "learn", "model_learn"
+    yield "bounds", "bounds"
     yield "bound_count", str(len(model.bounds))
-    if "learn" in model.entries:
-        yield from _learning(model, cells, texts)
-
-
-def _learning(model: NativeModel, cells: list[str], texts: list[str]) -> Iterator[tuple[str, str]]:
     yield "store_text", str(texts.index("profile_store"))
     yield "learn_if", f"{{{cells.index('learn')}, {cells.index('learn_faithful')}}}"
     for name, field in _LEARNING_CELLS.items():

@@ -11,9 +11,9 @@
 #pragma GCC diagnostic ignored "-Wunused-parameter" /* the standard prescribes them */
 #include "calls.h"
 
-static void tell(const Session *s, Level level, const char *category, const char *text) {
-    fmi2CallbackLogger logger = (fmi2CallbackLogger)s->importer.logger;
-    logger(s->importer.environment, s->name, (fmi2Status)level, category, text);
+static void tell(const Importer *importer, Level level, const char *category, const char *text) {
+    fmi2CallbackLogger logger = (fmi2CallbackLogger)importer->logger;
+    logger(importer->environment, importer->name, (fmi2Status)level, category, text);
 }
 
 const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
@@ -22,8 +22,12 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
                               const fmi2CallbackFunctions *callbacks, fmi2Boolean visible,
                               fmi2Boolean logging) {
     if (!callbacks) return NULL;
-    Importer importer = {tell, (void (*)(void))callbacks->logger, callbacks->componentEnvironment,
-                         "%#"}; /* may be printed with printf; #r1# is a variable */
+    Importer importer = {
+        .tell = tell,
+        .logger = (void (*)(void))callbacks->logger,
+        .environment = callbacks->componentEnvironment,
+        .doubled = "%#", /* may be printed with printf; #r1# is a variable */
+    };
     const char *problem = NULL;
     if (type != fmi2CoSimulation) problem = "only co-simulation is possible";
     if (!guid || strcmp(guid, model.guid) != 0) problem = "the GUID is that of another FMU";
@@ -50,10 +54,10 @@ GET(Real, KIND_REAL, CELL(i).real)
 GET(Integer, KIND_INTEGER | KIND_ENUMERATION, (fmi2Integer)CELL(i).integer)
 GET(Boolean, KIND_BOOLEAN, (fmi2Boolean)CELL(i).integer)
 GET(String, KIND_STRING, TEXT(i))
-SET(Real, KIND_REAL, CELL(i).real = values[i])
-SET(Integer, KIND_INTEGER | KIND_ENUMERATION, CELL(i).integer = values[i])
-SET(Boolean, KIND_BOOLEAN, CELL(i).integer = values[i] != fmi2False)
-SET(String, KIND_STRING, good = session_set_text(s, references[i], values[i]))
+SET(Real, KIND_REAL, {.real = values[i]})
+SET(Integer, KIND_INTEGER | KIND_ENUMERATION, {.integer = values[i]})
+SET(Boolean, KIND_BOOLEAN, {.integer = values[i] != fmi2False})
+SET_TEXTS
 
 /* The status of the last step, none of which is ever pending */
 

@@ -17,9 +17,9 @@
 #pragma GCC diagnostic ignored "-Wunused-parameter" /* the standard prescribes them */
 #include "calls.h"
 
-static void tell(const Session *s, Level level, const char *category, const char *text) {
-    fmi3LogMessageCallback log_message = (fmi3LogMessageCallback)s->importer.logger;
-    log_message(s->importer.environment, (fmi3Status)level, category, text);
+static void tell(const Importer *importer, Level level, const char *category, const char *text) {
+    fmi3LogMessageCallback log_message = (fmi3LogMessageCallback)importer->logger;
+    log_message(importer->environment, (fmi3Status)level, category, text);
 }
 
 /* What all three instantiations are given. */
@@ -28,7 +28,12 @@ static void tell(const Session *s, Level level, const char *category, const char
 #define CALLBACK fmi3InstanceEnvironment environment, fmi3LogMessageCallback log_message
 
 static Session *new_session(NAMES, CALLBACK, const char *problem) {
-    Importer importer = {tell, (void (*)(void))log_message, environment, "#"}; /* #1# is a variable */
+    Importer importer = {
+        .tell = tell,
+        .logger = (void (*)(void))log_message,
+        .environment = environment,
+        .doubled = "#", /* #1# is a variable */
+    };
     if (!token || strcmp(token, model.token) != 0)
         problem = "the instantiation token is that of another FMU";
     return session_new(name, resources, logging, problem, &importer);
@@ -84,11 +89,11 @@ GET(Int32, KIND_INTEGER, (fmi3Int32)CELL(i).integer)
 GET(Int64, KIND_ENUMERATION, CELL(i).integer)
 GET(Boolean, KIND_BOOLEAN, CELL(i).integer != 0)
 GET(String, KIND_STRING, TEXT(i))
-SET(Float64, KIND_REAL, CELL(i).real = values[i])
-SET(Int32, KIND_INTEGER, CELL(i).integer = values[i])
-SET(Int64, KIND_ENUMERATION, CELL(i).integer = values[i])
-SET(Boolean, KIND_BOOLEAN, CELL(i).integer = values[i])
-SET(String, KIND_STRING, good = session_set_text(s, references[i], values[i]))
+SET(Float64, KIND_REAL, {.real = values[i]})
+SET(Int32, KIND_INTEGER, {.integer = values[i]})
+SET(Int64, KIND_ENUMERATION, {.integer = values[i]})
+SET(Boolean, KIND_BOOLEAN, {.integer = values[i]})
+SET_TEXTS
 
 /* What the capability flags say is not there, other types, model exchange, scheduled execution */
 

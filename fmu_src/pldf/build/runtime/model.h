@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "table.h" /* MODEL_CELLS, MODEL_TEXTS, and codes and sizes that Python defines */
+
 typedef union {
     int64_t integer;
     double real;
@@ -28,12 +30,21 @@ typedef struct { /* value references of two Real parameters */
     int32_t allowed, used;
 } Bound;
 
+typedef struct { /* what only a model that learns has: cells, texts and columns */
+    Entry *adopt, *learn;
+    const Bound *bounds; /* of every profile; none may be weaker than what is used */
+    int32_t bound_count;
+    int32_t store_text, driver_id, apply_learned, learn_if[2], localization;
+    int32_t first_node, nodes, intervening, interventions, profile_iteration, profile_status;
+    int32_t base_column, learned_column, following_column;
+} Learning;
+
 typedef struct {
     const char *guid, *token; /* of FMI 2.0, of FMI 3.0 */
     const Variable *variables;
     int32_t variable_count;
     const Cell *defaults;
-    Entry *start, *adopt, *refresh, *step, *learn; /* NULL: the model has none */
+    Entry *start, *refresh, *step; /* refresh is NULL if outputs follow no input without a step */
     /* columns of the block: per node (the first ones belong to the state), then per script line */
     int32_t node_columns, kept_columns, script_columns, route_column;
     int32_t route_if, script_if; /* cell that asks for it, -1: always; -2: never */
@@ -44,14 +55,17 @@ typedef struct {
     int32_t watch, watch_flag, watch_time;
     const char *const *watch_texts;
     int32_t watch_count;
-    const Bound *bounds; /* none may be weaker than what is used */
-    int32_t bound_count;
-    /* the profile, for models with learn: cells and columns */
-    int32_t store_text, driver_id, apply_learned, learn_if[2], localization, first_node, nodes, intervening;
-    int32_t interventions, profile_iteration, profile_status;
-    int32_t base_column, learned_column, following_column;
+    const Learning *learning; /* NULL: it does not learn */
 } Model;
 
 extern const Model model;
 
-#include "table.h" /* MODEL_CELLS, MODEL_TEXTS */
+typedef struct {
+    const char *name;
+    double low, high;
+    bool whole;
+} ProfileColumn;
+
+/* The base profile's, then those of an iteration. */
+extern const ProfileColumn profile_columns[1 + ITERATION_COLUMNS];
+extern const char *const phase_names[];

@@ -1,4 +1,4 @@
-/* As pldf/profile_file.py; a reader accepts exactly what a writer writes. */
+/* As pldf/profiles/profile_file.py; a reader accepts exactly what a writer writes. */
 #include "profile.h"
 
 #include <math.h>
@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ALIGNMENT = 64, LINE_MAX_BYTES = 128, CHECKSUM_SIZE = 15, NODES_MAX = 10000000 };
-static const double SPEED_MAX_MPS = 200.0, COUNT_MAX = 999999999.0;
+#include "model.h"
+
+enum { LINE_MAX_BYTES = 128 };
 
 typedef struct {
     const uint8_t *at, *end;
@@ -126,16 +127,18 @@ static bool check_end(const uint8_t *bytes, int64_t size, int64_t expected, char
     return false;
 }
 
+static const double *block_at(const Profile *p, int64_t block) {
+    return (const double *)(const void *)(p->bytes + p->head + block * p->stride);
+}
+
 static bool check_values(const Profile *p, int64_t block, char *why) {
-    static const char *const names[] = {"base_mps", "learned_mps", "offset_mps", "drive",
-                                        "intervention"};
-    int64_t name = block == 0 ? 0 : 1 + (block - 1) % 4;
-    const double *values = profile_block(p, block);
-    double low = name == 2 ? -SPEED_MAX_MPS : 0.0, high = name > 2 ? COUNT_MAX : SPEED_MAX_MPS;
+    const ProfileColumn *column = &profile_columns[block ? 1 + (block - 1) % ITERATION_COLUMNS : 0];
+    const double *values = block_at(p, block);
     for (int64_t i = 0; i < p->nodes; i++)
-        if (!(values[i] >= low && values[i] <= high) || (name > 2 && floor(values[i]) != values[i])) {
+        if (!(values[i] >= column->low && values[i] <= column->high) ||
+            (column->whole && floor(values[i]) != values[i])) {
             snprintf(why, REASON_SIZE, "byte %lld: %s is %g at %lld m",
-                     (long long)(p->head + block * p->stride + 8 * i), names[name], values[i],
+                     (long long)(p->head + block * p->stride + 8 * i), column->name, values[i],
                      (long long)i);
             return false;
         }
@@ -170,15 +173,15 @@ bool profile_parse(Profile *p, char *why) {
     if (!take_end(&cursor, p->bytes)) return false;
     p->head = cursor.at - p->bytes;
     p->stride = stride_of(p->nodes);
-    int64_t blocks = 1 + 4 * p->count;
+    int64_t blocks = 1 + ITERATION_COLUMNS * p->count;
     if (!check_end(p->bytes, p->size, p->head + blocks * p->stride + CHECKSUM_SIZE, why)) return false;
     for (int64_t block = 0; block < blocks; block++)
         if (!check_values(p, block, why)) return false;
     return true;
 }
 
-const double *profile_block(const Profile *p, int64_t block) {
-    return (const double *)(const void *)(p->bytes + p->head + block * p->stride);
+const double *profile_block(const Profile *p, int64_t iteration, int64_t column) {
+    return block_at(p, 1 + ITERATION_COLUMNS * (iteration - 1) + column);
 }
 
 bool profile_same_history(const Profile *a, const Profile *b) {
@@ -188,13 +191,13 @@ bool profile_same_history(const Profile *a, const Profile *b) {
     size_t lines = (size_t)(a->lines_end - a->lines);
     return b->lines_end - b->lines == (int64_t)lines &&
            memcmp(a->bytes + a->lines, b->bytes + b->lines, lines) == 0 &&
-           memcmp(profile_block(a, 1), profile_block(b, 1), (size_t)(4 * count * a->stride)) == 0;
+           memcmp(block_at(a, 1), block_at(b, 1), (size_t)(ITERATION_COLUMNS * count * a->stride)) == 0;
 }
 
 uint8_t *profile_extend(const Profile *p, const Lesson *lesson, int64_t *size) {
     int64_t count = p->bytes ? p->count : 0, stride = stride_of(p->nodes);
-    int64_t old_lines = count ? p->lines_end - p->lines : 0;
-    int64_t most = 512 + old_lines + (5 + 4 * count) * stride + CHECKSUM_SIZE;
+    int64_t old_lines = count ? p->lines_end - p->lines : 0, old = ITERATION_COLUMNS * count * stride;
+    int64_t most = 512 + old_lines + (1 + ITERATION_COLUMNS) * stride + old + CHECKSUM_SIZE;
     uint8_t *bytes = calloc(1, (size_t)most);
     if (!bytes) return NULL;
     int64_t at = sprintf((char *)bytes,
@@ -208,9 +211,9 @@ uint8_t *profile_extend(const Profile *p, const Lesson *lesson, int64_t *size) {
     bytes[at++] = '\n';
     memcpy(bytes + at, lesson->base, (size_t)(8 * p->nodes));
     at += stride;
-    if (count) memcpy(bytes + at, profile_block(p, 1), (size_t)(4 * count * stride));
-    at += 4 * count * stride;
-    for (int column = 0; column < 4; column++, at += stride)
+    if (count) memcpy(bytes + at, block_at(p, 1), (size_t)old);
+    at += old;
+    for (int column = 0; column < ITERATION_COLUMNS; column++, at += stride)
         memcpy(bytes + at, lesson->columns + column * p->nodes, (size_t)(8 * p->nodes));
     write_checksum(bytes, at);
     *size = at + CHECKSUM_SIZE;

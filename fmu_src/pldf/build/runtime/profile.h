@@ -1,9 +1,6 @@
 /* The bytes of profile files and of prepared routes and scripts, checked before they are used. */
 #pragma once
 
-#include <stdbool.h>
-#include <stdint.h>
-
 #include "disk.h"
 
 typedef struct { /* docs/profile-format.md */
@@ -19,7 +16,7 @@ typedef struct { /* docs/native.md */
 } Prepared;
 
 typedef struct { /* what a drive leaves behind */
-    const double *base, *columns; /* n values; the four columns of an iteration, one by one */
+    const double *base, *columns; /* n values; the columns of an iteration, one by one */
     const char *note;
     int64_t interventions;
 } Lesson;
@@ -28,7 +25,7 @@ typedef struct { /* what a drive leaves behind */
 bool profile_parse(Profile *profile, char *why);
 bool prepared_parse(Prepared *prepared, const char *kind, int64_t columns, char *why);
 
-const double *profile_block(const Profile *profile, int64_t block);
+const double *profile_block(const Profile *profile, int64_t iteration, int64_t column); /* from 1 */
 bool profile_same_history(const Profile *a, const Profile *b);
 /* Bytes of the profile (driver, route and nodes are set) with one more iteration; NULL: memory. */
 uint8_t *profile_extend(const Profile *profile, const Lesson *lesson, int64_t *size);

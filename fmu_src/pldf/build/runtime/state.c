@@ -31,7 +31,7 @@ bool session_get_state(Session *s, void **state) {
     bool whole = s->run.block && is_whole(&s->state);
     int64_t size = (int64_t)sizeof(State) + 8 * (whole ? kept_values(s->state.nodes, s->state.rows) : 0);
     State *copy = malloc((size_t)size);
-    if (!copy) return session_tell(s, ERROR_LEVEL, "not enough memory for a state");
+    if (!copy) return importer_tell(&s->importer, ERROR_LEVEL, "not enough memory for a state");
     *copy = s->state;
     copy->size = size;
     if (whole) keep_columns(s, (double *)(copy + 1));
@@ -55,10 +55,10 @@ static bool restore_drive(Session *s, const State *state) {
     bool here = s->prepared && same_parameters(&s->state, state);
     State found = here ? s->state : *state;
     Run run = {0};
-    if (!here && !session_make_run(s, &found, &run)) return false;
+    if (!here && !run_make(&s->importer, &found, &run)) return false;
     if (found.nodes != state->nodes || found.rows != state->rows) {
         run_release(&run);
-        return session_tell(s, ERROR_LEVEL, "the route of this state has changed; not restored");
+        return importer_tell(&s->importer, ERROR_LEVEL, "the route of this state has changed; not restored");
     }
     if (!here) {
         run_release(&s->run);
@@ -93,7 +93,7 @@ bool session_serialized_size(Session *s, const void *state, size_t *size) {
 bool session_serialize(Session *s, const void *state, void *bytes, size_t size) {
     size_t needed;
     if (!bytes || !session_serialized_size(s, state, &needed)) return false;
-    if (size < needed) return session_tell(s, ERROR_LEVEL, "too little room for the state");
+    if (size < needed) return importer_tell(&s->importer, ERROR_LEVEL, "too little room for the state");
     uint32_t sum = checksum(state, (int64_t)(needed - sizeof sum));
     memcpy(bytes, state, needed - sizeof sum);
     memcpy((uint8_t *)bytes + needed - sizeof sum, &sum, sizeof sum);
@@ -130,12 +130,13 @@ static bool has_sound_values(const State *state) {
 
 /* What was recorded lies on the route. */
 static bool has_sound_record(const State *state) {
-    if (!model.learn || !is_whole(state)) return true;
+    const Learning *l = model.learning;
+    if (!l || !is_whole(state)) return true;
     const Cell *record = state->record;
-    int64_t first = record[model.first_node].integer, count = record[model.interventions].integer;
+    int64_t first = record[l->first_node].integer, count = record[l->interventions].integer;
     return within(first, 0, state->nodes) && within(count, 0, state->nodes) &&
-           within(record[model.nodes].integer, 0, state->nodes - first) &&
-           within(record[model.intervening].integer, 0, count > 0);
+           within(record[l->nodes].integer, 0, state->nodes - first) &&
+           within(record[l->intervening].integer, 0, count > 0);
 }
 
 /* Whether these bytes, with a checksum behind them, are a state of this build. Anybody can write a
@@ -154,9 +155,9 @@ static bool is_state(const uint8_t *bytes, size_t size) {
 bool session_deserialize(Session *s, const void *bytes, size_t size, void **state) {
     if (!s || !bytes || !state) return false;
     if (size < sizeof(uint32_t) || !is_state(bytes, size - sizeof(uint32_t)))
-        return session_tell(s, ERROR_LEVEL, "these bytes are not a state of this FMU; not restored");
+        return importer_tell(&s->importer, ERROR_LEVEL, "these bytes are not a state of this FMU; not restored");
     State *copy = malloc(size);
-    if (!copy) return session_tell(s, ERROR_LEVEL, "not enough memory for a state");
+    if (!copy) return importer_tell(&s->importer, ERROR_LEVEL, "not enough memory for a state");
     memcpy(copy, bytes, size - sizeof(uint32_t));
     free(*state);
     *state = copy;

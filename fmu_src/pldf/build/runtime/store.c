@@ -38,7 +38,7 @@ static StoreResult read_profile(const char *path, const Profile *wanted, Profile
 static bool free_name(const char *stem, const char *kind, const char *end, char *name, char *why) {
     for (int number = 1; number <= KEPT_MAX; number++) {
         snprintf(name, PATH_SIZE, "%s.%s-%d%s", stem, kind, number, end);
-        if (disk_entry(name) == NO_ENTRY) return true;
+        if (os_entry(name) == NO_ENTRY) return true;
     }
     snprintf(why, REASON_SIZE, "%d files of it are kept already", KEPT_MAX);
     return false;
@@ -49,93 +49,86 @@ static bool keep_aside(const char *path, char *kept, char *why) {
 }
 
 /* A file in the place of the folder means that nothing can ever be saved. */
-static bool can_be_folder(const char *folder, char *message) {
+static bool can_be_folder(const Importer *importer, const char *folder) {
     char part[PATH_SIZE];
     snprintf(part, sizeof part, "%s", folder);
-    while (disk_entry(part) == NO_ENTRY)
+    while (os_entry(part) == NO_ENTRY)
         if (!disk_parent(part)) return true;
-    if (disk_entry(part) == FOLDER) return true;
-    snprintf(message, MESSAGE_SIZE, "%s: not a folder; choose another profile store", part);
+    if (os_entry(part) == FOLDER) return true;
+    importer_tell(importer, WARNING, "%s: not a folder; choose another profile store", part);
     return false;
 }
 
-StoreResult store_load(const char *folder, Profile *profile, char *message) {
+StoreResult store_load(const Importer *importer, const char *folder, Profile *profile) {
     char path[PATH_SIZE], kept[PATH_SIZE], why[REASON_SIZE] = "", again[REASON_SIZE] = "";
     bool aside = false;
     Profile found;
     Lock lock;
-    if (!can_be_folder(folder, message)) return STORE_REFUSED;
+    if (!can_be_folder(importer, folder)) return STORE_REFUSED;
     path_of(folder, profile, path);
     StoreResult result = read_profile(path, profile, &found, why);
-    if (result == STORE_REFUSED) { /* again under the lock: somebody may have dealt with it */
-        if (disk_lock(folder, &lock, again)) {
-            result = read_profile(path, profile, &found, why);
-            aside = result == STORE_REFUSED && keep_aside(path, kept, again);
-            disk_unlock(&lock);
-        }
+    if (result == STORE_REFUSED && disk_lock(folder, &lock, again)) {
+        result = read_profile(path, profile, &found, why); /* somebody may have dealt with it */
+        aside = result == STORE_REFUSED && keep_aside(path, kept, again);
+        disk_unlock(&lock);
     }
     if (result == STORE_LOADED) *profile = found;
     if (result == STORE_REFUSED)
-        snprintf(message, MESSAGE_SIZE,
-                 "%s: %s; %s%s%s; the drive goes on with the base profile", path, why,
-                 aside ? "kept as " : "left in its place (", aside ? kept : again, aside ? "" : ")");
+        importer_tell(importer, WARNING, "%s: %s; %s%s%s; the drive goes on with the base profile", path,
+                      why, aside ? "kept as " : "left in its place (", aside ? kept : again,
+                      aside ? "" : ")");
     return result;
 }
 
-static Level not_saved(const char *path, const char *why, char *message) {
-    snprintf(message, MESSAGE_SIZE, "profile not saved: %s: %s, what was there is unchanged; make "
-             "room there, or choose another folder", path, why);
+static Level not_saved(const Importer *importer, const char *path, const char *why) {
+    importer_tell(importer, ERROR_LEVEL, "profile not saved: %s: %s, what was there is unchanged; make "
+                                         "room there, or choose another folder", path, why);
     return ERROR_LEVEL;
 }
 
 /* Under the lock: puts the bytes where they belong. */
-static Level put(const char *path, const Profile *ours, const uint8_t *bytes, int64_t size,
-                 char *message) {
+static Level put(const Importer *importer, const char *path, const Profile *ours, const Profile *new) {
     char kept[PATH_SIZE], stem[PATH_SIZE], why[REASON_SIZE] = "", again[REASON_SIZE] = "";
     Profile present;
-    Level level = INFO;
     StoreResult found = read_profile(path, ours, &present, why);
     bool late = found == STORE_LOADED && !profile_same_history(&present, ours);
     profile_free(&present);
-    if (late) {
-        snprintf(stem, sizeof stem, "%.*s", (int)(strlen(path) - strlen(".pldf")), path);
-        if (!free_name(stem, "conflict", ".pldf", kept, why)) return not_saved(path, why, message);
-        snprintf(message, MESSAGE_SIZE,
-                 "%s: changed by another process during this drive and left as it is; what this "
-                 "drive learned is kept in %s", path, kept);
-        path = kept;
-        level = WARNING;
-    } else if (found == STORE_REFUSED) {
-        if (!keep_aside(path, kept, again)) {
-            snprintf(message, MESSAGE_SIZE, "profile not saved: %s: %s; it is left as it was, since "
-                     "it cannot be renamed: %s; choose another folder", path, why, again);
-            return ERROR_LEVEL;
-        }
-        snprintf(message, MESSAGE_SIZE, "%s: not a sound profile; kept as %s, a new one took its "
-                 "place", path, kept);
-        level = WARNING;
+    snprintf(stem, sizeof stem, "%.*s", (int)(strlen(path) - strlen(".pldf")), path);
+    if (late && !free_name(stem, "conflict", ".pldf", kept, why)) return not_saved(importer, path, why);
+    if (found == STORE_REFUSED && !keep_aside(path, kept, again)) {
+        importer_tell(importer, ERROR_LEVEL, "profile not saved: %s: %s; it is left as it was, since it "
+                      "cannot be renamed: %s; choose another folder", path, why, again);
+        return ERROR_LEVEL;
     }
-    return disk_replace(path, bytes, size, why) ? level : not_saved(path, why, message);
+    const char *place = late ? kept : path;
+    if (!disk_replace(place, new->bytes, new->size, why)) return not_saved(importer, place, why);
+    if (late)
+        importer_tell(importer, WARNING, "%s: changed by another process during this drive and left as "
+                      "it is; what this drive learned is kept in %s", path, kept);
+    else if (found == STORE_REFUSED)
+        importer_tell(importer, WARNING, "%s: not a sound profile; kept as %s, a new one took its place",
+                      path, kept);
+    return late || found == STORE_REFUSED ? WARNING : INFO;
 }
 
-Level store_save(const char *folder, const Profile *profile, const Lesson *lesson, char *message) {
-    char path[PATH_SIZE], why[REASON_SIZE] = "";
+Level store_save(const Importer *importer, const char *folder, const Profile *profile,
+                 const Lesson *lesson) {
+    char path[PATH_SIZE], why[REASON_SIZE] = "not enough memory";
     Lock lock;
-    Profile check = {0};
+    Profile new = {0};
     Level level = ERROR_LEVEL;
     path_of(folder, profile, path);
-    check.bytes = profile_extend(profile, lesson, &check.size);
-    if (!check.bytes) {
-        snprintf(message, MESSAGE_SIZE, "profile not saved: not enough memory");
-    } else if (!profile_parse(&check, why) || !disk_make_folder(folder, why) ||
-               !disk_lock(folder, &lock, why)) { /* nothing is written that cannot be read back */
-        snprintf(message, MESSAGE_SIZE, "profile not saved: %s: %s", path, why);
+    new.bytes = profile_extend(profile, lesson, &new.size);
+    if (!new.bytes || !profile_parse(&new, why) || !disk_make_folder(folder, why) ||
+        !disk_lock(folder, &lock, why)) { /* nothing is written that cannot be read back */
+        importer_tell(importer, ERROR_LEVEL, "profile not saved: %s: %s", path, why);
     } else {
-        snprintf(message, MESSAGE_SIZE, "drive %lld learned from %lld pedal interventions, saved in %s",
-                 (long long)check.count, (long long)lesson->interventions, path);
-        level = put(path, profile, check.bytes, check.size, message);
+        level = put(importer, path, profile, &new);
         disk_unlock(&lock);
     }
-    profile_free(&check);
+    if (level == INFO)
+        importer_tell(importer, INFO, "drive %lld learned from %lld pedal interventions, saved in %s",
+                      (long long)new.count, (long long)lesson->interventions, path);
+    profile_free(&new);
     return level;
 }

@@ -1,0 +1,64 @@
+#include "importer.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+bool importer_tell(const Importer *importer, Level level, const char *format, ...) {
+    static const char *const categories[] = {
+        [INFO] = "logEvents", [WARNING] = "logStatusWarning", [ERROR_LEVEL] = "logStatusError"};
+    char text[MESSAGE_SIZE], safe[2 * MESSAGE_SIZE], *to = safe;
+    va_list values;
+    if (importer->logger && (level != INFO || importer->events)) {
+        va_start(values, format);
+        vsnprintf(text, sizeof text, format, values);
+        va_end(values);
+        for (const char *at = text; *at; *to++ = *at++)
+            if (strchr(importer->doubled, *at)) *to++ = *at;
+        *to = 0;
+        importer->tell(importer, level, categories[level], safe);
+    }
+    return level != ERROR_LEVEL;
+}
+
+bool importer_log(Importer *importer, bool on, size_t count, const char *const categories[]) {
+    if (count && !categories) return false;
+    importer->events = on && count == 0;
+    for (size_t i = 0; on && i < count; i++)
+        if (categories[i] && (!strcmp(categories[i], "logEvents") || !strcmp(categories[i], "logAll")))
+            importer->events = true;
+    return true;
+}
+
+static bool is_hex(char c) { return c && strchr("0123456789abcdefABCDEF", c); }
+
+/* Capitals or not; `with` has none. */
+static bool starts(const char *text, const char *with) {
+    while (*with && (*text | 0x20) == *with) text++, with++;
+    return !*with;
+}
+
+static bool has_drive(const char *at) {
+    return *at && (starts(at + 1, ":") || starts(at + 1, "%3a"));
+}
+
+void importer_set_resources(Importer *importer, const char *address) {
+    bool coded = address && starts(address, "file:");
+    const char *at = !address ? "" : coded ? address + 5 : address;
+    char *path = importer->resources;
+    if (coded && !strncmp(at, "//", 2)) {
+        bool local = starts(at, "//localhost/"), whole = at[2] == '/' || has_drive(at + 2);
+        at += local ? 11 : whole ? 2 : 0; /* //server/share stays as it is */
+    }
+    if (coded && at[0] == '/' && has_drive(at + 1)) at++;
+    size_t length = 0;
+    for (; *at && length + 1 < PATH_SIZE; at++) {
+        unsigned byte = 0;
+        bool escaped = coded && *at == '%' && is_hex(at[1]) && is_hex(at[2]);
+        if (escaped) sscanf(at + 1, "%2x", &byte);
+        path[length++] = escaped ? (char)byte : *at;
+        if (escaped) at += 2;
+    }
+    while (length > 1 && (path[length - 1] == '/' || path[length - 1] == '\\')) length--;
+    path[*at ? 0 : length] = 0;
+}

@@ -1,0 +1,86 @@
+/* What only a model that learns has: the stored profile, before a drive and after it. */
+#include <math.h>
+#include <string.h>
+
+#include "run.h"
+
+bool learning_allows(const Importer *importer, const State *state) {
+    const Learning *l = model.learning;
+    for (int32_t i = 0; l && i < l->bound_count; i++) {
+        const Variable *allowed = &model.variables[l->bounds[i].allowed];
+        const Variable *used = &model.variables[l->bounds[i].used];
+        double most = state->record[allowed->cell].real, value = state->record[used->cell].real;
+        if (fabs(value) > fabs(most))
+            return importer_tell(importer, ERROR_LEVEL,
+                                 "parameter %s = %g: it bounds every profile, so it must not be weaker "
+                                 "than %s = %g", allowed->name, most, used->name, value);
+    }
+    return true;
+}
+
+static bool learns(const State *state) {
+    const Learning *l = model.learning;
+    return state->record[l->learn_if[0]].integer || state->record[l->learn_if[1]].integer;
+}
+
+/* Fills in the folder; if there is none, returns and tells why. */
+static int64_t find_store(const Importer *importer, const State *state, Run *run) {
+    char found[PATH_SIZE] = "", why[REASON_SIZE];
+    const char *given = state->texts[model.learning->store_text];
+    if (*given || os_environment("PLDF_PROFILE_STORE", found)) {
+        if (!*given) given = found;
+        if (os_absolute(given, run->folder, why)) return PROFILE_STATUS_BASE;
+        run->folder[0] = 0;
+        importer_tell(importer, WARNING, "%s: not a possible profile store: %s; nothing is loaded or "
+                                         "saved", given, why);
+        return PROFILE_STATUS_REFUSED;
+    }
+    if (learns(state) || state->record[model.learning->apply_learned].integer)
+        importer_tell(importer, WARNING, "no profile store: nothing is loaded or saved. Set the "
+                      "parameter profile_store or the environment variable PLDF_PROFILE_STORE to a "
+                      "folder.");
+    return PROFILE_STATUS_NOT_PERSISTED;
+}
+
+static int64_t load_profile(const Importer *importer, const State *state, Run *run) {
+    int64_t status = find_store(importer, state, run);
+    if (status != PROFILE_STATUS_BASE) return status;
+    StoreResult found = store_load(importer, run->folder, &run->stored);
+    if (found == STORE_REFUSED) return PROFILE_STATUS_REFUSED;
+    return found == STORE_LOADED && run->stored.count ? PROFILE_STATUS_LOADED : PROFILE_STATUS_BASE;
+}
+
+void learning_follow(const Importer *importer, State *state, Run *run) {
+    const Learning *l = model.learning;
+    Profile *p = &run->stored;
+    if (!l) return;
+    p->driver = state->record[l->driver_id].integer;
+    p->nodes = state->nodes;
+    state->record[l->profile_status].integer = load_profile(importer, state, run);
+    int64_t count = p->bytes ? p->count : 0;
+    state->record[l->profile_iteration].integer = count;
+    if (count && state->record[l->apply_learned].integer) {
+        double *learned = run->block + l->learned_column * p->nodes;
+        for (int column = 0; column < ITERATION_COLUMNS; column++)
+            memcpy(learned + column * p->nodes, profile_block(p, count, column), (size_t)(8 * p->nodes));
+        run_call(l->adopt, state, run, 0.0);
+    }
+    run_call(model.refresh, state, run, 0.0);
+}
+
+Level learning_finish(const Importer *importer, State *state, Run *run, bool before) {
+    const Learning *l = model.learning;
+    if (!l || !run->block || !learns(state) || state->record[l->nodes].integer < 2) return INFO;
+    if (before) {
+        importer_tell(importer, WARNING, "this drive had ended before its state was restored; it is not "
+                                         "learned a second time");
+        return WARNING;
+    }
+    run_call(l->learn, state, run, 0.0);
+    bool cut = state->record[l->intervening].integer;
+    Lesson lesson = {run->block + l->base_column * state->nodes,
+                     run->block + l->following_column * state->nodes,
+                     cut ? "drive, last intervention truncated" : "drive",
+                     state->record[l->interventions].integer};
+    return *run->folder ? store_save(importer, run->folder, &run->stored, &lesson) : INFO;
+}

@@ -1,0 +1,32 @@
+/* What a drive consists of, and what it needs from the disk and leaves there. */
+#pragma once
+
+#include "importer.h"
+#include "model.h"
+#include "store.h"
+
+typedef struct { /* what is saved and restored, followed by the kept columns */
+    char guid[40];
+    int64_t size; /* in bytes, with the columns */
+    int64_t nodes, rows, phase, ready, stale, told;
+    double time;
+    char texts[MODEL_TEXTS][PATH_SIZE];
+    Cell record[MODEL_CELLS];
+} State;
+
+typedef struct { /* what follows from the parameters */
+    double *block;
+    Profile stored;
+    char folder[PATH_SIZE]; /* of profiles; empty: nothing is persisted */
+} Run;
+
+/* Makes the run that follows from a state's parameters, and the rest of that state. */
+bool run_make(const Importer *importer, State *state, Run *run);
+void run_call(Entry *entry, State *state, Run *run, double step_s); /* if the model has it */
+void run_release(Run *run);
+
+/* Of models that learn (learning.c); the others allow everything, follow and keep nothing. */
+bool learning_allows(const Importer *importer, const State *state); /* the parameters */
+void learning_follow(const Importer *importer, State *state, Run *run);
+/* Of a drive that ends, and that ended `before`; INFO, or what was told of what could not be kept. */
+Level learning_finish(const Importer *importer, State *state, Run *run, bool before);

@@ -1,0 +1,95 @@
+"""Profiles and prepared files that are not as they should be, the same ones for every reader."""
+
+from __future__ import annotations
+
+import re
+import zlib
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+CHECKSUM_SIZE: Final = len(b"crc32 00000000\n")
+_NUMBERS: Final = (
+    b"0", b"-1", b"1", b"2", b"07", b"999999", b"10000000", b"999999999", b"1000000000",
+    b"9" * 19, b"9" * 99, b"+3", b" 3", b"3 ", b"0x3", b"",
+)  # fmt: skip
+_NOTES: Final = (
+    b"", b" ", b" a", b" a ", b"  a", b" " + b"n" * 79, b" " + b"n" * 80, b" " + b"n" * 81,
+    b" " + b"n" * 200, b" a b", b" \x7f", b" \t", b" \xc3\xa9", b" a\0b",
+)  # fmt: skip
+_VALUES: Final = (
+    np.nan, np.inf, -np.inf, -0.0, -1e-9, 0.5, 200.0, np.nextafter(200.0, 201.0), -200.0, -200.5,
+    999999999.0, 1e9, 5e-324,
+)  # fmt: skip
+
+
+def damaged(good: bytes, seed: int = 3) -> Iterator[bytes]:
+    """Yield variants of a profile or a prepared file: other bytes, lengths and numbers.
+
+    The checksum of most is right, so that what stands behind it is tested.
+    """
+    rng = np.random.default_rng(seed)
+    body = good[:-CHECKSUM_SIZE]
+    head = body.index(b"\nend")
+    start = body.index(b"\n", head + 1) + 1
+    yield from (b"", good[:-1], good[:-9], good[:head], good + good, good[:100], good + b"\0")
+    yield good.replace(b"\n", b"\r\n", 1)
+    yield good[:-2] + bytes([good[-2] ^ 1]) + good[-1:]
+    for number in range(80):
+        changed = bytearray(body)
+        at = rng.integers(0, len(body) if number % 2 else head)
+        changed[at] = rng.choice([0, 10, 32, 48, 57, 127, 255, changed[at] ^ 1])
+        yield checked(bytes(changed))
+    for line in body[:head].split(b"\n"):
+        name = line.split(b" ")[0]
+        for number in _NUMBERS:
+            yield checked(_filled(body.replace(line, name + b" " + number, 1)))
+        yield checked(_filled(body.replace(line + b"\n", b"", 1)))
+        yield checked(_filled(body.replace(line + b"\n", 2 * (line + b"\n"), 1)))
+    for value in _VALUES:
+        for at in rng.integers(0, (len(body) - start) // 8, 6):
+            place = start + 8 * int(at)
+            yield checked(body[:place] + np.float64(value).tobytes() + body[place + 8 :])
+
+
+def with_notes(good: bytes) -> Iterator[bytes]:
+    """Yield variants of a profile with other notes behind its last iteration."""
+    body = good[:-CHECKSUM_SIZE]
+    line = re.findall(rb"\niteration \d+ \d+[^\n]*", body)[-1]
+    short = re.match(rb"\niteration \d+ \d+", line)
+    assert short is not None
+    for note in _NOTES:
+        yield checked(_filled(body.replace(line, short.group() + note, 1)))
+
+
+def checked(body: bytes) -> bytes:
+    """Return the body with its checksum behind it."""
+    return body + b"crc32 %08x\n" % zlib.crc32(body)
+
+
+def is_prepared(data: bytes, kind: str, columns: int) -> bool:
+    """Tell whether these bytes are a prepared file as ``docs/native.md`` describes it."""
+    head = re.match(
+        rb"PLDF-PREPARED 1\nkind (route|script)\nkey [0-9a-f]{16}\ncolumns (0|[1-9]\d?)\n"
+        rb"rows (0|[1-9]\d{0,8})\nline (\d)\nend( *)\n",
+        data,
+    )
+    if head is None or head[1].decode() != kind or int(head[2]) != columns:
+        return False
+    rows, size = int(head[3]), len(head[0])
+    if not (3 if kind == "route" else 1) <= rows <= 10_000_001:
+        return False
+    if size % 64 or len(head[5]) > 63 or len(data) != size + 8 * columns * rows + CHECKSUM_SIZE:
+        return False
+    values = np.frombuffer(data, "<f8", columns * rows, size)
+    return data == checked(data[:-CHECKSUM_SIZE]) and bool(np.isfinite(values).all())
+
+
+def _filled(body: bytes) -> bytes:
+    """Return the body with as many spaces behind ``end`` as its header now needs."""
+    match = re.search(rb"\nend( *)\n", body)
+    if match is None:
+        return body
+    end = match.start() + len(b"\nend")
+    return body[:end] + b" " * (-(end + 1) % 64) + b"\n" + body[match.end() :]
