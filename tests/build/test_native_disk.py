@@ -116,10 +116,11 @@ def with_stack(
 def test_a_whole_drive_fits_into_a_little_stack(
     hosts: Hosts, platform: str, tmp_path: Path
 ) -> None:
-    """From instantiation to Terminate with learning and saving, into a new store and an old one."""
+    """From instantiation to Terminate with learning, saving and a long warning."""
     for _ in range(2):
         hosts.end(with_stack(hosts, platform, tmp_path, STACK_KB[platform]))
-    (profile,) = (tmp_path / ("store" * 20)).iterdir()
+    *beside, profile = sorted((tmp_path / ("store" * 20)).iterdir())
+    assert [b"iteration 2 " in path.read_bytes() for path in beside] == [False, True]
     assert b"iteration 2 " in profile.read_bytes()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ import pytest
 pytest.importorskip("lief", reason="needs the extra: pip install -e .[native]")
 
 import lief
+from pldf.build.fmus import RUNTIME
 from pldf.build.native import linking
 from pldf.build.native.language import check_language
 from pldf.build.native.linking import HEADERS, link, zig
@@ -170,3 +172,29 @@ def test_the_functions_of_both_versions_are_known() -> None:
         assert f" {name};" in text
         declared = [line for line in text.splitlines() if f"FMI{version}_Export fmi" in line]
         assert len(declared) == len([n for n in names if n.startswith(f"fmi{version}")])
+
+
+# The C runtime
+
+FLOORS = (
+    ("os", "disk", "model"),
+    ("importer", "profile"),
+    ("store",),
+    ("run", "learning"),
+    ("session", "values", "state"),
+    ("calls", "fmi2", "fmi3"),
+)
+
+
+def test_the_runtime_has_floors() -> None:
+    """A file includes headers of its own floor or of those below; the table is generated."""
+    floor_of = {stem: floor for floor, stems in enumerate(FLOORS) for stem in stems}
+    paths = sorted(RUNTIME.glob("*.[ch]"))
+    assert {path.stem.removesuffix("_posix").removesuffix("_windows") for path in paths} == set(
+        floor_of
+    )
+    for path in paths:
+        here = floor_of[path.stem.removesuffix("_posix").removesuffix("_windows")]
+        for header in re.findall(r'#include "(\w+)\.h"', path.read_text(encoding="utf-8")):
+            known = header == "table" or header.endswith("Functions")
+            assert known or floor_of[header] <= here, f"{path.name} includes {header}.h"

@@ -47,26 +47,12 @@ FMI(Status) FMI(DeSerializeFMUstate)(void *c, const FMI(Byte) bytes[], size_t si
         return answer(good);                                                           \
     }
 
-/* CELL: the value as it lies in the record. Outputs stay as they are if it is there already. */
-#define SET(TYPE, KINDS, ...)                                                          \
+#define SET(TYPE, KINDS, WRITE)                                                        \
     FMI(Status) FMI(Set##TYPE)(VALUES(const FMI(TYPE))) {                              \
         Session *s = c;                                                                \
         bool good = session_can_set(s, references, count, values, VALUE_COUNT, KINDS); \
-        for (size_t i = 0; good && i < count; i++) {                                   \
-            Cell given = __VA_ARGS__;                                                  \
-            if (given.integer != CELL(i).integer) s->state.stale = 1;                  \
-            CELL(i) = given;                                                           \
-        }                                                                              \
+        for (size_t i = 0; good && i < count; i++) WRITE;                              \
         return answer(good);                                                           \
-    }
-
-#define SET_TEXTS                                                                           \
-    FMI(Status) FMI(SetString)(VALUES(const FMI(String))) {                                 \
-        Session *s = c;                                                                     \
-        bool good = session_can_set(s, references, count, values, VALUE_COUNT, KIND_STRING); \
-        for (size_t i = 0; good && i < count; i++)                                          \
-            good = session_set_text(s, references[i], values[i]);                           \
-        return answer(good);                                                                \
     }
 
 /* The i-th variable, in GET and SET. */

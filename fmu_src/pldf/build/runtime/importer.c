@@ -7,11 +7,11 @@
 bool importer_tell(const Importer *importer, Level level, const char *format, ...) {
     static const char *const categories[] = {
         [INFO] = "logEvents", [WARNING] = "logStatusWarning", [ERROR_LEVEL] = "logStatusError"};
-    char text[MESSAGE_SIZE], safe[2 * MESSAGE_SIZE], *to = safe;
+    char safe[2 * MESSAGE_SIZE], *text = safe + MESSAGE_SIZE, *to = safe; /* which never overtakes text */
     va_list values;
     if (importer->logger && (level != INFO || importer->events)) {
         va_start(values, format);
-        vsnprintf(text, sizeof text, format, values);
+        vsnprintf(text, MESSAGE_SIZE, format, values);
         va_end(values);
         for (const char *at = text; *at; *to++ = *at++)
             if (strchr(importer->doubled, *at)) *to++ = *at;

@@ -51,6 +51,7 @@ bool session_can_set(Session *s, const uint32_t *references, size_t count, const
         if (!session_allows(s, v->name, AT_START | IN_INITIALIZATION | late)) return false;
         parameters = parameters || v->causality != INPUT;
     }
+    s->state.stale = 1;
     if (parameters) s->state.ready = s->prepared = false;
     return true;
 }
