@@ -107,24 +107,30 @@ def _advance(st: VehicleState, step_s: float) -> None:
     brake = brake_demand + (st.brake_force_n - brake_demand) * brake_share
     st.drive_force_n += (drive_demand - st.drive_force_n) * drive_x * drive_share
     st.brake_force_n += (brake_demand - st.brake_force_n) * brake_x * brake_share
-    if st.speed_mps <= 0.0 and not _leaves_standstill(st):
-        return
-    first = (drive - brake - st.load_n) * st.mps2_per_n
-    # The load's change over half a step is that of the drag alone; grade changes are slower.
-    drag_rate = 2.0 * drag_n_per_v2(st) * st.speed_mps * first
-    _move(st, first - 0.5 * step_s * drag_rate * st.mps2_per_n, step_s)
+    acceleration = 0.0
+    if st.speed_mps > 0.0 or _leaves_standstill(st):
+        first = (drive - brake - st.load_n) * st.mps2_per_n
+        # The load's change over half a step is that of the drag alone; grade changes are slower.
+        drag_rate = 2.0 * drag_n_per_v2(st) * st.speed_mps * first
+        acceleration = first - 0.5 * step_s * drag_rate * st.mps2_per_n
+    _move(st, acceleration, step_s)
 
 
 def _move(st: VehicleState, acceleration_mps2: float, step_s: float) -> None:
     """Integrate speed and position; within a step that ends the motion, only up to the stop."""
     before = st.speed_mps
     after = before + step_s * acceleration_mps2
+    s_m = st.s_m
+    speed = before
     if after > 0.0:
-        st.s_m += 0.5 * (before + after) * step_s
-        st.speed_mps = after
+        s_m += 0.5 * (before + after) * step_s
+        speed = after
     elif before > 0.0:
-        st.s_m += 0.5 * before * step_s * before / (before - after)  # this share of the step
-        st.speed_mps = 0.0
+        s_m += 0.5 * before * step_s * before / (before - after)  # this share of the step
+        speed = 0.0
+    # Stored on one path: compiled, what follows need not wait for the memory.
+    st.s_m = s_m
+    st.speed_mps = speed
 
 
 def _leaves_standstill(st: VehicleState) -> bool:
