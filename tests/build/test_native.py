@@ -26,8 +26,7 @@ def driven(fmus: dict[str, Fmu], phase: str, store: Path, number: int) -> tuple[
     """Return recording and profile file after one drive of 1 km with this store."""
     more = {"vehicle": {"start_s_m": 3400.0}}
     setting = DriveSetting(packed_route(0), {"route_id": 0}, store=store, more=more)
-    values = values_of(PHASES[phase], setting, number)
-    result = drive(fmus, values, setting.course(lambda _: None))
+    result = drive(fmus, values_of(PHASES[phase], setting), setting.length_m)
     recording = store / f"{number}.csv"
     write_recording(recording, result.recording)
     (profile,) = store.glob("*.pldf")
