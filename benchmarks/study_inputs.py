@@ -12,7 +12,7 @@ from pldf.cosim.fmu import Fmu, Place, Slave
 from pldf.cosim.master import connections, unpacked
 from pldf.cosim.values import Values
 from pldf.roads import packed_route
-from pldf.study.phases import PHASES, Setting, values_of
+from pldf.study.phases import PHASES, DriveSetting, values_of
 
 # Letter of each type in a batch of one type; FMI 2.0 moves enumerations as Integers.
 _LETTERS: Final = {"Real": "R", "Integer": "I", "Enumeration": "I", "Boolean": "B"}
@@ -39,10 +39,10 @@ def study_loads(folder: Path, steps_max: int) -> Iterator[tuple[str, Load]]:
     In A2 the driver intervenes by gas, brake and lever. The FMUs are unpacked for as long as the
     iterator lives; not more than ``steps_max`` steps are driven.
     """
-    setting = Setting(packed_route(0), {"route_id": 0})
+    setting = DriveSetting(packed_route(0), {"route_id": 0})
     values = values_of(PHASES["A2"], setting)
     with unpacked(folder) as fmus:
-        tables = _drive(fmus, values, setting.route.nodes - 1.0, steps_max)
+        tables = _drive(fmus, values, setting.length_m, steps_max)
         for part, fmu in fmus.items():
             load = Load(fmu, _signals(fmu, values[part]), b"".join(tables[part]))
             yield fmu.description.coSimulation.modelIdentifier, load
