@@ -26,7 +26,8 @@ class Effort(NamedTuple):
     """How much is measured."""
 
     drive_steps: int = 1_000_000  # of the study's drive, which has 20,000
-    drives: int = 101
+    runs: int = 20
+    drives: int = 5  # in each run, of either FMU in turn
     single_steps: int = 10_000_000
     starts: int = 101
     finishes: int = 21
@@ -77,7 +78,8 @@ class Bench:
 
 
 def _times(bench: Bench, effort: Effort) -> dict[str, Any]:
-    costs = _columns(bench.run("cost", bench.fmu, bench.empty, effort.drives))
+    runs = [bench.run("cost", bench.fmu, bench.empty, effort.drives) for _ in range(effort.runs)]
+    costs = _columns([list(map(median, _columns(run))) for run in runs])
     quantiles = bench.run("tail", bench.fmu, bench.empty, effort.single_steps)
     single = {
         who: dict(zip(_PERCENTILES, (NS * float(x) for x in numbers), strict=True))
@@ -114,7 +116,7 @@ def _finish_times(bench: Bench, times: int, disk: Path) -> dict[str, Any]:
     return result
 
 
-def _columns(lines: Sequence[Sequence[str]]) -> list[list[float]]:
+def _columns(lines: Sequence[Sequence[str | float]]) -> list[list[float]]:
     return [[float(word) for word in column] for column in zip(*lines, strict=True)]
 
 

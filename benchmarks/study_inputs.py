@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from pldf.cosim.drive_limits import STEP_S
-from pldf.cosim.fmu import Fmu, Place, Slave
+from pldf.cosim.fmu import BufferElement, Fmu, Slave
 from pldf.cosim.master import connections, unpacked
 from pldf.cosim.values import Values
 from pldf.roads import packed_route
@@ -88,7 +88,7 @@ def _set_start_values(slave: Slave) -> None:
 
 def _row(slave: Slave) -> bytes:
     """Return the inputs: Reals, Integers, Booleans; filled up to a multiple of 8 bytes."""
-    places: dict[str, list[Place]] = {letter: [] for letter in _ORDER}
+    places: dict[str, list[BufferElement]] = {letter: [] for letter in _ORDER}
     for signal in slave.fmu.named("input"):
         places[_LETTERS[signal.kind]].append(slave.inputs[signal.name])
     row = b"".join(

@@ -16,7 +16,9 @@ def measured(native_folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, 
     monkeypatch.syspath_prepend(BENCHMARKS)
     import native_times  # noqa: PLC0415 - found by now
 
-    effort = native_times.Effort(drive_steps=300, drives=3, single_steps=1000, starts=3, finishes=2)
+    effort = native_times.Effort(
+        drive_steps=300, runs=2, drives=3, single_steps=1000, starts=3, finishes=2
+    )
     times: dict[str, Any] = native_times.native_times(native_folder, effort)
     return times
 
