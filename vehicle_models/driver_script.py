@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
+from pldf.errors import ModelError
 from pldf.files.tables import Column, Fault, Format, Table, read_table
-from pldf.instance import ModelError
 
 from .script_kernel import (
     AT_POSITION,

@@ -36,7 +36,6 @@ class LongitudinalVehicle(Instance[VehicleState]):
             grade = np.array(route_arrays(route).grade)
         self.attach((grade,))
         vehicle_start(self.record, self._grade)
-        self._warn_once()
 
     def refresh(self) -> None:
         """Recompute acceleration and jerk from the inputs."""
@@ -45,15 +44,12 @@ class LongitudinalVehicle(Instance[VehicleState]):
     def step(self, step_s: float) -> None:
         """Advance by ``step_s`` > 0 seconds."""
         vehicle_step(self.record, self._grade, step_s)
-        self._warn_once()
+        if self.record.invalid_input and not self.record.warned:
+            self.record.warned = 1
+            self.report("warning", INVALID_INPUT)
 
     def attach(self, arrays: Arrays) -> None:
         """Take over the grade per metre (one array; none before the first initialization)."""
         super().attach(arrays)
         if arrays:
             self._grade = view(arrays[0])
-
-    def _warn_once(self) -> None:
-        if self.record.invalid_input and not self.record.warned:
-            self.record.warned = 1
-            self.report("warning", INVALID_INPUT)

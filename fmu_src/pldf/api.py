@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .instance import ModelError
+from .errors import ModelError
 from .kernel.arrays import FloatArray
 from .roads import Route
 from .settings import Given, set_parameters

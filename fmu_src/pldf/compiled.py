@@ -88,7 +88,7 @@ def compile_modules(
     function into its callers: a loop over steps is then twice as fast, since LLVM must assume of a
     call that it changes every record; the results stay the same to the bit.
 
-    Raises ValueError when two modules define functions of the same name.
+    Raises ValueError when two modules define functions, or constants of other values, of one name.
     """
     import numba  # noqa: PLC0415 - slow to import, and who only asks for a digest needs none
 
@@ -98,6 +98,8 @@ def compile_modules(
     for module in modules:
         for name, value in vars(module).items():
             if not isinstance(value, FunctionType):
+                if isinstance(value, int | float) and shared.get(name, value) != value:
+                    raise ValueError(f"{name} in {module.__name__} has another value elsewhere")
                 shared.setdefault(name, value)
             elif value.__module__ == module.__name__:
                 if owners.setdefault(name, module.__name__) != module.__name__:

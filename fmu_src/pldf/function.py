@@ -8,7 +8,8 @@ from typing import Final, cast
 
 import numpy as np
 
-from .instance import Arrays, Instance, Level, ModelError, views, zeros
+from .errors import ModelError
+from .instance import Arrays, Instance, Level, views, zeros
 from .kernel import drive
 from .kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from .kernel.codes import (

@@ -15,7 +15,7 @@ from typing import Any, Generic, Literal, TypeVar, cast
 
 import numpy as np
 
-from .errors import ModelError as ModelError  # noqa: PLC0414 - every model raises it
+from .errors import ModelError
 from .kernel.arrays import FloatArray, Floats
 from .kernel.signals import signals_of
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 from typing import Any
 
-from .instance import ModelError
+from .errors import ModelError
 from .kernel.signals import Signal, signals_of
 
 Given = float | int | str

@@ -11,7 +11,7 @@ import pytest
 from pldf.analysis.analysis import StudyFolder, analyse
 from pldf.analysis.questionnaire import LAAN, PROFILE, read_questionnaire
 from pldf.cli import main
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE, STANDBY
 from pldf.recordings.recording import Recording, write_recording
 from pldf.roads import packed_route

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from pldf.analysis.long_run import read_long_run
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 
 HEADER = "stretch_factor,drive,people,combined_percent,pedal_percent,content_percent,wish_error_kmh"
 

@@ -12,7 +12,7 @@ from pldf.build import first_use, fmus
 from pldf.build.first_use import fmus_to_drive
 from pldf.build_version import build_version
 from pldf.cosim.which_fmus import choose_fmus
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 
 ARCHIVES = {f"{name}.fmu" for name in fmus.FMUS}
 

@@ -11,7 +11,7 @@ import pytest
 from fmi_host import Host
 from hostile_files import damaged, is_prepared, with_notes
 from native_drives import CASES, by_source
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.kernel.codes import PROFILE_BASE, PROFILE_LOADED, PROFILE_REFUSED
 from pldf.profiles.profile_file import decode, encode
 from pldf.profiles.store import ProfileStore

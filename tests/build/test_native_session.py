@@ -14,8 +14,8 @@ from typing import Any
 import pytest
 from fmi3_host import Host3, Slave3
 from fmi_host import Host, Slave
+from pldf.errors import ModelError
 from pldf.function import DrivingFunction
-from pldf.instance import ModelError
 from pldf.kernel.state import PldfState
 from pldf.profiles.profile_file import decode, encode
 from pldf.roads import packed_route

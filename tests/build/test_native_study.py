@@ -12,7 +12,7 @@ from pldf.build_version import build_version
 from pldf.cosim.fmu import Slave
 from pldf.cosim.master import unpacked
 from pldf.cosim.prepared import write_prepared_route, write_prepared_script
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.profiles.store import ProfileStore
 from pldf.roads import fingerprint, packed_route, read_route
 from pldf.study.phases import PHASES

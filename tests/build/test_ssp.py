@@ -16,7 +16,7 @@ from pldf.build import ssp
 from pldf.build.packages import sources, start_values, write_packages
 from pldf.cosim.fmu import Fmu
 from pldf.cosim.master import PARTS, connections, unpacked
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.kernel.codes import MODE
 from pldf.study.phases import PHASES
 from pyssp_standard.ssp import SSP

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from pldf.cosim.fmu import Fmu
 from pldf.cosim.master import ARRIVED, Drive, connections, drive
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE, STANDBY
 from pldf.profiles.store import ProfileStore, StoredProfile
 from pldf.recordings.interventions import Interval, pedal_interventions, rates_of

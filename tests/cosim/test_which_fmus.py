@@ -11,7 +11,7 @@ from pldf import cli
 from pldf.build_version import build_version, native_making
 from pldf.cosim import kinds, which_fmus
 from pldf.cosim.which_fmus import Choice, choose_fmus
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 
 Make = Callable[[], None]
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pldf.errors import ModelError
 from pldf.files.tables import table_csv, write_table
-from pldf.instance import ModelError
 
 
 def test_numbers_of_numpy_and_of_python_are_written_alike() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as hs
+from pldf.errors import ModelError
 from pldf.files.tables import (
     Column,
     Format,
@@ -18,7 +19,6 @@ from pldf.files.tables import (
     read_table,
     table_csv,
 )
-from pldf.instance import ModelError
 
 PATH = Path("t.csv")
 MIXED = Format(

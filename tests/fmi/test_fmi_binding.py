@@ -10,11 +10,11 @@ from pldf.build import isolate
 from pldf.build.archive import with_guid
 from pldf.build.description3 import model_description3
 from pldf.build.documentation import document
+from pldf.errors import ModelError
 from pldf.fmi.access import Access
 from pldf.fmi.description import Model, model_description
 from pldf.fmi.phases import CALLS, Phase, next_phase
 from pldf.fmi.units import base_unit
-from pldf.instance import ModelError
 from pldf.kernel.signals import (
     Enumeration,
     choice_input,

@@ -48,13 +48,10 @@ class Run:
         return self.session.read(self.access.group([self.references[n] for n in self.outputs]))
 
     def memory(self) -> list[str]:
-        """Return all that the model remembers, but whether it has warned of senseless inputs.
-
-        It warns when it is initialized, and a read in initialization mode initializes it.
-        """
+        """Return all that the model remembers."""
         model = self.session.model
-        numbers = {name: value for name, value in asdict(model.record).items() if name != "warned"}
-        return [f"{name} {float(value).hex()}" for name, value in numbers.items()] + [
+        numbers = asdict(model.record).items()
+        return [f"{name} {float(value).hex()}" for name, value in numbers] + [
             array.tobytes().hex() for array in model.arrays
         ]
 

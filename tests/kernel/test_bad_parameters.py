@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as hs
 from laboratory import PointMass, assert_sound, function, road
+from pldf.errors import ModelError
 from pldf.function import DrivingFunction
-from pldf.instance import ModelError
 from pldf.kernel.signals import signals_of
 from pldf.kernel.state import PldfState
 

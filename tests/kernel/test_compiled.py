@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from pldf.compiled import KERNEL_MODULES, compile_modules, kernel, pack, unpack
 from pldf.instance import view, views, zeros
 from pldf.kernel import replay as replay_module
+from pldf.kernel import substeps
 from pldf.kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from pldf.kernel.codes import XY
 from pldf.kernel.replay import Samples
@@ -283,6 +284,14 @@ def test_two_functions_of_one_name_are_refused() -> None:
     twin.replay = source  # type: ignore[attr-defined]
     with pytest.raises(ValueError, match="replay is defined in"):
         compile_modules((replay_module, twin))
+
+
+def test_two_constants_of_one_name_must_be_equal() -> None:
+    """The modules share one namespace: one would compute with the value of the other."""
+    twin = ModuleType("twin")
+    twin.SUBSTEP_MAX_S = 0.5  # type: ignore[attr-defined]
+    with pytest.raises(ValueError, match="SUBSTEP_MAX_S in twin has another value elsewhere"):
+        compile_modules((substeps, twin))
 
 
 def test_packing_a_record_loses_nothing() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.profiles.profile_file import decode, encode
 from pldf.profiles.store import Iteration, ProfileRefused, StoredProfile
 from profile_examples import drive_result, learned_profile, new_profile, sealed

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.profiles.profile_file import encode
 from pldf.profiles.store import (
     ProfileRefused,

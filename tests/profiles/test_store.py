@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pldf.errors import ModelError
 from pldf.files.disk import LOCK_NAME, folder_lock
-from pldf.instance import ModelError
 from pldf.profiles import store
 from pldf.profiles.profile_file import encode
 from pldf.profiles.store import (

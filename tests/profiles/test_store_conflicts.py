@@ -8,9 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from pldf.errors import ModelError
 from pldf.files import disk
 from pldf.files.disk import LOCK_NAME, folder_lock
-from pldf.instance import ModelError
 from pldf.profiles.profile_file import encode
 from pldf.profiles.store import (
     ProfileConflict,

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pldf.errors import ModelError
 from pldf.files import disk
 from pldf.files.disk import LOCK_NAME
-from pldf.instance import ModelError
 from pldf.profiles.profile_file import encode
 from pldf.profiles.store import (
     ProfileStore,

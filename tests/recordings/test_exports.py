@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from pldf.cli import main
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.kernel.codes import MODE
 from pldf.recordings.exports import UNITS, write_mdf4, write_parquet
 from pldf.recordings.recording import COLUMNS, Recording, write_recording

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pldf.errors import ModelError
 from pldf.function import DrivingFunction
-from pldf.instance import ModelError
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE, MODE, STANDBY
 from pldf.recordings.recording import (
     COLUMNS,

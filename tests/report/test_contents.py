@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from pldf.analysis.analysis import StudyFolder, analyse
 from pldf.cli import main
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.report.contents import Contents, collect
 
 

@@ -15,7 +15,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_hex, to_rgba
 from matplotlib.patches import Rectangle
 from pldf.cli import main
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.recordings.interventions import Rates
 from pldf.report import figures, paper, screen
 from pldf.report.contents import Contents

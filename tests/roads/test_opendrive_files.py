@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from opendrive_text import SHAPES, geometry, road, straight
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.roads import Route, read_route
 
 Reader = Callable[..., Route]

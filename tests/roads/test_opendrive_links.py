@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from opendrive_text import geometry, link, road, straight
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.roads import Route, route_arrays
 
 KMH = 1.0 / 3.6

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.roads import (
     Route,
     fingerprint,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.roads import Route, read_route, write_route_csv
 
 HEADER = "s_m,curvature_per_m,speed_limit_mps"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.roads import (
     fingerprint,
     open_route,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.study.population import (
     FIELDS,
     Distribution,

@@ -18,7 +18,7 @@ from laboratory import files
 from pldf import cli
 from pldf.analysis.drives_table import read_drives
 from pldf.build_version import build_version
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.recordings.recording import read_recording
 from pldf.study.drive_row import COLUMNS
 from pldf.study.participants import Participant

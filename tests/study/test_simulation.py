@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from pldf.cosim.fmu import Fmu
 from pldf.cosim.master import connections
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.recordings.interventions import rates_of
 from pldf.recordings.recording import COLUMNS
 from pldf.roads import open_road, route_arrays

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.roads import packed_route, write_route_csv
 from pldf.study.participants import DRIVER_SIGNALS
 from pldf.study.participants_file import participants_csv, read_participants

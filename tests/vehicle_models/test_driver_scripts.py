@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from driver_watch import LEVER, PEDALS, STEP_S, driver, first, presses, watch
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 
 from vehicle_models.driver_script import CONTROLS, PACKED, packed_script, read_script
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from car import car, run
 from pldf.compiled import compile_modules, pack, unpack
-from pldf.instance import ModelError
+from pldf.errors import ModelError
 from pldf.kernel import interpolation, substeps
 from pldf.kernel.interpolation import value_at
 

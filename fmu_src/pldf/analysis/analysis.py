@@ -15,8 +15,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..errors import ModelError
 from ..function import DrivingFunction
-from ..instance import ModelError
 from ..kernel.arrays import FloatArray
 from ..recordings.interventions import Rates
 from ..recordings.recording import Recording, completed, read_recording

@@ -7,8 +7,8 @@ from collections.abc import Collection, Iterator, Sequence
 from math import isnan, nan
 from pathlib import Path
 
+from ..errors import ModelError
 from ..files.tables import Fault, Table, read_table
-from ..instance import ModelError
 from ..recordings.interventions import pedal_interventions, rates_of
 from ..recordings.recording import Recording
 from ..study.drive_row import DRIVES, PHASE, DriveRow

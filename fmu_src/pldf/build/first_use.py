@@ -14,7 +14,7 @@ from ..cache import CACHE_VARIABLE, user_cache
 from ..cosim.kinds import NATIVE_FOLDER, USUAL_FOLDER, Kind
 from ..cosim.master import PARTS
 from ..cosim.which_fmus import Choice, choose_fmus
-from ..instance import ModelError
+from ..errors import ModelError
 
 _DIGITS: Final = 10
 

@@ -16,7 +16,7 @@ from ..cosim.drive_limits import STEP_S
 from ..cosim.fmu import Fmu
 from ..cosim.master import PARTS, connections
 from ..cosim.values import Value
-from ..instance import ModelError
+from ..errors import ModelError
 from ..kernel.codes import LEARN_FAITHFUL
 from ..roads import packed_route
 from ..roads.load import STUDY_ROAD_ID

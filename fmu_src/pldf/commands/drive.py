@@ -12,7 +12,7 @@ import numpy as np
 from ..cosim.master import Drive, drive
 from ..cosim.road_values import road_values
 from ..cosim.values import Value
-from ..instance import ModelError
+from ..errors import ModelError
 from ..kernel.codes import LEARN
 from ..kernel.units import KMH_PER_MPS
 from ..profiles.store import STORE_VARIABLE, ProfileStore

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
+from ..errors import ModelError
 from ..function import DrivingFunction
-from ..instance import ModelError
 from ..profiles.store import read_profile
 from ..recordings.interventions import rates_of
 from ..recordings.recording import Recording, completed, read_recording

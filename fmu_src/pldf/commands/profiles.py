@@ -12,8 +12,8 @@ from typing import Final
 
 import numpy as np
 
+from ..errors import ModelError
 from ..files.tables import table_csv, write_table
-from ..instance import ModelError
 from ..kernel.arrays import FloatArray
 from ..kernel.units import KMH_PER_MPS
 from ..profiles.store import (

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from ..cosim.prepared import SUFFIX, write_prepared_route
-from ..instance import ModelError
+from ..errors import ModelError
 from ..kernel.units import KMH_PER_MPS
 from ..roads import fingerprint, write_route_csv
 from ..route_facts import BINDING_MPS, RouteFacts, route_facts

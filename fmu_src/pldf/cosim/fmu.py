@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, cast
 
-from ..instance import Level, ModelError
+from ..errors import ModelError
+from ..instance import Level
 from ..kernel.signals import Causality, Enumeration, Kind, Signal
 from .values import FmuMessage, Value
 

@@ -18,7 +18,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from ..instance import ModelError
+from ..errors import ModelError
 from ..recordings.recording import COLUMNS, Recording
 from .drive_limits import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS, STEP_S
 from .fmu import BufferElement, Fmu, Slave, unpack

@@ -11,8 +11,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..errors import ModelError
 from ..files.disk import replace_file
-from ..instance import ModelError
 from ..roads import Route, fingerprint, packed_route, route_arrays
 from ..roads.load import PACKED
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 from typing import Final
 
-from ..instance import ModelError
+from ..errors import ModelError
 from ..settings import Given, parameter_value
 from .fmu import Fmu
 from .master import connections

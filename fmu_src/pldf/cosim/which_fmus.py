@@ -11,7 +11,7 @@ from typing import Any, Final, NamedTuple
 import fmpy  # type: ignore[import-untyped]
 
 from ..build_version import build_version, native_making
-from ..instance import ModelError
+from ..errors import ModelError
 from .fmu import describe
 from .kinds import NATIVE_FOLDER, USUAL_FOLDER, Kind
 from .master import PARTS

@@ -19,7 +19,7 @@ from itertools import count
 from pathlib import Path
 from typing import Final, TypeVar
 
-from ..instance import ModelError
+from ..errors import ModelError
 
 LOCK_NAME: Final = "pldf-store.lock"
 _POLL_S: Final = 0.01

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ..instance import ModelError
+from ..errors import ModelError
 from ..kernel.signals import Kind, Signal
 
 _GROUPS_MAX = 256  # an importer that never repeats a group must not fill the memory

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import Final
 
-from ..instance import ModelError
+from ..errors import ModelError
 
 
 class Phase(IntEnum):

@@ -13,7 +13,8 @@ from dataclasses import asdict, fields
 from math import inf, isfinite
 from typing import Any, Final
 
-from ..instance import Instance, ModelError
+from ..errors import ModelError
+from ..instance import Instance
 from ..kernel.signals import Signal, signals_of
 from .access import Group
 from .phases import Phase, next_phase

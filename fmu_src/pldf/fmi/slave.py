@@ -19,7 +19,8 @@ from xml.etree.ElementTree import Element
 from pythonfmu import Fmi2Slave  # type: ignore[import-untyped]
 from pythonfmu.enums import Fmi2Status  # type: ignore[import-untyped]
 
-from ..instance import Instance, Level, ModelError
+from ..errors import ModelError
+from ..instance import Instance, Level
 from .access import Access
 from .phases import Phase
 from .session import Session

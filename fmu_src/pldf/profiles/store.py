@@ -25,6 +25,7 @@ from typing import Final
 
 import numpy as np
 
+from ..errors import ModelError
 from ..files.disk import (
     folder_lock,
     free_name,
@@ -34,7 +35,6 @@ from ..files.disk import (
     rename_file,
     replace_file,
 )
-from ..instance import ModelError
 from .profile_file import FILE_MAX, decode, encode, require_match
 from .stored_profile import Iteration, ProfileRefused, StoredProfile
 

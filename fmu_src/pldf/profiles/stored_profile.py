@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..instance import ModelError
+from ..errors import ModelError
 from ..kernel.arrays import FloatArray
 
 

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..instance import ModelError
+from ..errors import ModelError
 from ..kernel.codes import MODE
 from .recording import COLUMNS, RECORDING, Recording
 

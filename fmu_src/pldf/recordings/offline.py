@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import ModelError
 from ..function import DrivingFunction
-from ..instance import ModelError, view
+from ..instance import view
 from ..kernel.arrays import FloatArray
 from ..kernel.interpolation import cell_at
 from ..kernel.replay import Samples, replay

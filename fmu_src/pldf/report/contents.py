@@ -12,9 +12,9 @@ import numpy as np
 
 from ..analysis.analysis import Analysis, StudyFolder
 from ..analysis.long_run import Columns, read_long_run
+from ..errors import ModelError
 from ..files.tables import read_table
 from ..function import DrivingFunction
-from ..instance import ModelError
 from ..kernel.parameters import PlannerParameters
 from ..kernel.signals import signals_of
 from ..profiles.stored_profile import Iteration, StoredProfile

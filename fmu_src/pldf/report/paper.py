@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
-from ..instance import ModelError
+from ..errors import ModelError
 from .palette import GRID
 from .scene import Axis, Band, Boxes, Fill, Line, Note, Panel, Scene, Stroke
 

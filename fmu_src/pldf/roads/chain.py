@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
-from ..instance import ModelError
+from ..errors import ModelError
 from .xml_tree import Element, Place
 
 _FORWARD_END: Final = {False: "successor", True: "predecessor"}

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from ..instance import ModelError
+from ..errors import ModelError
 from .csv_file import parse_route_csv
 from .opendrive import parse_opendrive
 from .route import Route

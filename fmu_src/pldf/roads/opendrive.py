@@ -19,7 +19,7 @@ from typing import Any, Final, TypeVar
 
 import numpy as np
 
-from ..instance import ModelError
+from ..errors import ModelError
 from ..kernel.arrays import FloatArray
 from .chain import Leg, Network
 from .geometry import Cubic, Geometry, LinearCurvature, Pose, param_poly3, poly3

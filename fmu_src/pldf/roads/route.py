@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..instance import ModelError
+from ..errors import ModelError
 from ..kernel.arrays import FloatArray, RouteArrays
 from ..kernel.units import KMH_PER_MPS
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
 
-from ..instance import ModelError
+from ..errors import ModelError
 
 
 @dataclass(slots=True)

@@ -19,7 +19,7 @@ import numpy as np
 
 from vehicle_models.driver_state import DriverState
 
-from ..instance import ModelError
+from ..errors import ModelError
 from ..kernel.signals import signals_of
 from ..kernel.units import MPS_PER_KMH
 from .participants import Participant

@@ -21,9 +21,10 @@ import numpy as np
 from .. import __version__
 from ..compiled import digest
 from ..cosim.fmu import Fmu
+from ..errors import ModelError
 from ..files.disk import replace_file
 from ..files.tables import Cell, write_table
-from ..instance import Instance, ModelError
+from ..instance import Instance
 from ..kernel.signals import signals_of
 from ..roads import fingerprint, route_arrays
 from .drive_row import COLUMNS

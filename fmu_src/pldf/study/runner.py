@@ -17,7 +17,7 @@ from itertools import islice
 from multiprocessing import forkserver
 from typing import Any, Final
 
-from ..instance import ModelError
+from ..errors import ModelError
 from .participants import Participant
 from .results import StudyResults
 from .simulation import compile_all

@@ -24,8 +24,9 @@ from vehicle_models.wish_kernel import WishArrays
 from ..compiled import KERNEL_MODULES, Namespace, compile_modules, pack, unpack
 from ..cosim.drive_limits import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS
 from ..cosim.values import Value
+from ..errors import ModelError
 from ..function import DrivingFunction, next_iteration
-from ..instance import Instance, ModelError, zeros
+from ..instance import Instance, zeros
 from ..kernel.arrays import FloatArray, NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from ..kernel.codes import LEARN_FAITHFUL, LEARN_OFF, OFF, STANDBY
 from ..kernel.signals import signals_of

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from vehicle_models.vehicle_state import VehicleState
 
-from ..instance import ModelError
+from ..errors import ModelError
 from ..kernel.signals import Signal, signals_of
 from ..kernel.state import PldfState
 from ..roads import Road, open_road

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 from ..cosim.fmu import Fmu
 from ..cosim.master import Drive, drive
 from ..cosim.road_values import road_values
-from ..instance import ModelError
+from ..errors import ModelError
 from ..kernel.state import PldfState
 from ..profiles.store import ProfileStore
 from ..profiles.stored_profile import StoredProfile

@@ -17,7 +17,8 @@ class Watch:
     Attributes:
         field: name of an integer field; 0 is the normal value.
         texts: one per value.
-        once: told once per drive, from initialization on; else with the time, on each change.
+        once: told once per drive, by the first step that meets it; else with the time, on each
+            change.
         flag: field that is set to 1 once it was told, empty without ``once``.
     """
 

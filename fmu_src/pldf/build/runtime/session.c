@@ -42,14 +42,15 @@ Session *session_new(const char *name, const char *resources, bool events, const
 
 /* The run */
 
-static void watch(Session *s, bool stepped) {
+/* Called by steps alone: what is told does not depend on who read an output before. */
+static void watch(Session *s) {
     Cell *record = s->state.record;
     int64_t now = record[model.watch].integer;
     if (model.watch_flag >= 0) { /* once per drive */
         if (!now || record[model.watch_flag].integer) return;
         record[model.watch_flag].integer = 1;
         importer_tell(&s->importer, WARNING, "%s", model.watch_texts[now]);
-    } else if (stepped && now != s->state.told) {
+    } else if (now != s->state.told) {
         s->state.told = now;
         importer_tell(&s->importer, now ? WARNING : INFO, "t = %.3f s: %s",
                       1e-9 * (double)record[model.watch_time].integer, model.watch_texts[now]);
@@ -66,7 +67,6 @@ static bool start_run(Session *s) {
     s->state = fresh;
     s->state.ready = s->prepared = true;
     s->state.stale = s->state.told = 0;
-    watch(s, false);
     return true;
 }
 
@@ -132,7 +132,7 @@ bool session_step(Session *s, double time, double step_s) {
     run_call(model.step, &s->state, &s->run, step_s);
     s->state.time = time + step_s;
     s->state.stale = 0;
-    watch(s, true);
+    watch(s);
     return true;
 }
 

@@ -16,7 +16,7 @@ from ...cosim.kinds import KINDS, NATIVE_FOLDER, USUAL_FOLDER
 from ...cosim.master import unpacked
 from ...cosim.settable import Chosen
 from ...cosim.values import FmuMessage
-from ...instance import ModelError
+from ...errors import ModelError
 from .road import Parser, add_road
 from .settings import split_settings
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from ...instance import ModelError
+from ...errors import ModelError
 from ...settings import set_parameters
 
 

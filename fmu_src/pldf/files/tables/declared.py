@@ -8,7 +8,7 @@ from math import inf
 from pathlib import Path
 from typing import Final, Literal, NamedTuple
 
-from ...instance import ModelError
+from ...errors import ModelError
 
 Kind = Literal["number", "whole", "flag", "word", "text"]
 

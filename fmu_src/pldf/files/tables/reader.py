@@ -25,7 +25,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ...instance import ModelError
+from ...errors import ModelError
 from ...kernel.arrays import FloatArray
 from ..disk import reason
 from .declared import Column, Fault, Format, TableError

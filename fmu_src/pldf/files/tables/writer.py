@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ...instance import ModelError
+from ...errors import ModelError
 from ...kernel.arrays import FloatArray
 from ..disk import reason, replace_file
 

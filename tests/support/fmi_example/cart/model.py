@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from pldf.instance import Instance, Message, ModelError
+from pldf.errors import ModelError
+from pldf.instance import Instance, Message
 from pldf.kernel.signals import (
     Enumeration,
     choice_input,
