@@ -66,10 +66,12 @@ def test_what_was_saved_lasts_through_a_power_cut(
     ]
 
 
+@pytest.mark.parametrize("how", ["steal", "replace"])
 def test_a_lock_on_a_file_that_its_last_holder_removed_does_not_count(
-    recorded_host: Path, hosts: Hosts, tmp_path: Path
+    recorded_host: Path, hosts: Hosts, tmp_path: Path, how: str
 ) -> None:
-    found = calls(recorded_host, hosts, tmp_path, tmp_path, "steal")
+    """Whether or not there is another file in its place."""
+    found = calls(recorded_host, hosts, tmp_path, tmp_path, how)
     locking = [call for call in found if LOCK in call]
     assert locking == [
         f"unlink {LOCK}",

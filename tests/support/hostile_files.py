@@ -36,6 +36,7 @@ def damaged(good: bytes, seed: int = 3) -> Iterator[bytes]:
     yield from (b"", good[:-1], good[:-9], good[:head], good + good, good[:100], good + b"\0")
     yield good.replace(b"\n", b"\r\n", 1)
     yield good[:-2] + bytes([good[-2] ^ 1]) + good[-1:]
+    yield checked(body[:-1] + bytes([body[-1] ^ 1]))  # the last fill byte of a profile
     for number in range(80):
         changed = bytearray(body)
         at = rng.integers(0, len(body) if number % 2 else head)

@@ -1,7 +1,8 @@
-/* usage: recorded_host DESCRIPTION CALLS [steal]
+/* usage: recorded_host DESCRIPTION CALLS [steal | replace]
    A short drive in a process that writes into the file CALLS what the FMU does to the disk, one line
    per call that succeeds: mkdir, rename, fsync, flock, unlink, and the file's path. With "steal",
-   somebody else removes the lock's file before it is locked for the first time. */
+   somebody else removes the lock's file before it is locked for the first time, and with "replace"
+   a third one makes another in its place. */
 #define _GNU_SOURCE
 #include <fcntl.h>
 #include <string.h>
@@ -11,7 +12,7 @@
 #include "host.h"
 
 static FILE *calls;
-static bool steal;
+static bool steal, replace;
 
 static int note(int result, const char *call, const char *path) {
     if (calls && result == 0) fprintf(calls, "%s %s\n", call, path);
@@ -38,7 +39,9 @@ int fsync(int file) { return note((int)syscall(SYS_fsync, file), "fsync", path_o
 int flock(int file, int how) {
     if (calls && steal) {
         steal = false;
-        unlink(path_of(file));
+        const char *path = path_of(file);
+        unlink(path);
+        if (replace) close(open(path, O_CREAT | O_RDWR, 0666));
     }
     return note((int)syscall(SYS_flock, file, how), "flock", path_of(file));
 }
@@ -49,6 +52,7 @@ int main(int count, char **arguments) {
     Fmu *fmu = fmu_open(arguments[1]);
     CHECK((calls = fopen(arguments[2], "w")) != NULL);
     steal = count > 3;
+    replace = steal && !strcmp(arguments[3], "replace");
     void *c = started(fmu, "recorded");
     for (int k = 0; k < 5; k++) {
         in[0] = 20.0 * k;
