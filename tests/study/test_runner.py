@@ -130,17 +130,38 @@ def wait_for(condition: Callable[[], bool]) -> None:
         time.sleep(0.01)
 
 
+def begun(arguments: list[str], out: Path, on_ctrl_c: signal.Handlers) -> subprocess.Popen[str]:
+    """Return the process of a study that has begun, whatever Ctrl-C does to this one."""
+    before = signal.signal(signal.SIGINT, on_ctrl_c)  # inherited
+    try:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "pldf.cli", *arguments, "2"],
+            stderr=subprocess.PIPE, text=True, start_new_session=True,
+        )  # fmt: skip
+    finally:
+        signal.signal(signal.SIGINT, before)
+    wait_for(lambda: len(list(out.glob("parts/*.json"))) > 2)
+    return process
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_where_ctrl_c_is_ignored_a_study_lives_through_it(tmp_path: Path) -> None:
+    """As with nohup, and in a script's background."""
+    study, out = write_study(tmp_path, count=COUNT), tmp_path / "out"
+    process = begun(["study", str(study), "--out", str(out), "--jobs"], out, signal.SIG_IGN)
+    os.killpg(process.pid, signal.SIGINT)
+    _, told = process.communicate(timeout=60)
+    assert (process.returncode, told) == (0, "")
+    assert (out / "drives.csv").exists()
+
+
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
 def test_ctrl_c_and_a_killed_study_lose_nothing(how: signal.Signals, tmp_path: Path) -> None:
     study = write_study(tmp_path, count=CROWD)
     out = tmp_path / "out"
     arguments = ["study", str(study), "--out", str(out), "--jobs"]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "pldf.cli", *arguments, "2"],
-        stderr=subprocess.PIPE, text=True, start_new_session=True,
-    )  # fmt: skip
-    wait_for(lambda: len(list(out.glob("parts/*.json"))) > 2)
+    process = begun(arguments, out, signal.SIG_DFL)
     os.killpg(process.pid, how)
     _, told = process.communicate(timeout=60)
     kept = {path: path.stat().st_mtime_ns for path in out.glob("parts/P*.json")}

@@ -6,7 +6,6 @@ Results do not depend on where or in which order participants are driven. Only t
 from __future__ import annotations
 
 import multiprocessing
-import signal
 import sys
 from collections.abc import Callable, Generator
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
@@ -18,6 +17,7 @@ from multiprocessing import forkserver
 from typing import Any, Final
 
 from ..errors import ModelError
+from .interrupt import die_of_ctrl_c
 from .participants import Participant
 from .results import StudyResults
 from .simulation import compile_all
@@ -106,9 +106,9 @@ _job: Job | None = None
 
 
 def _begin(job: Job) -> None:
-    """Prepare a process; it dies of Ctrl-C at once and in silence, who started it cleans up."""
+    """Prepare a process."""
     global _job  # noqa: PLW0603 - the only way to hand something to a process once
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    die_of_ctrl_c()
     _job = job
 
 

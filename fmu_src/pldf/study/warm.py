@@ -6,12 +6,11 @@ or ten. This is why importing the module has an effect; nothing else imports it.
 
 from __future__ import annotations
 
-import signal
+from .interrupt import die_of_ctrl_c
 
-# Ctrl-C reaches this process too: it ends at once and in silence.
-signal.signal(signal.SIGINT, signal.SIG_DFL)
+die_of_ctrl_c()
 
-from ..roads import open_road  # noqa: E402 - the signal comes first, since these take time
+from ..roads import open_road  # noqa: E402 - after that, since these take time
 from .participants import StudySettings  # noqa: E402
 from .simulation import compile_all  # noqa: E402
 from .unit import do_unit  # noqa: E402, F401 - what the forked processes call
