@@ -45,16 +45,16 @@ def choose_fmus(folder: Path, kind: Kind | None = None) -> Choice:
     Raises:
         ModelError: FMUs of this kind are not there, do not run here, or cannot be read.
     """
-    found: dict[Kind, _Found] = {}
+    by_kind: dict[Kind, _FmuSet] = {}
     for place in (folder / NATIVE_FOLDER, folder):
-        one = _look(place)
-        if one is not None:
-            found.setdefault(one.kind, one)
+        fmus = _look(place)
+        if fmus is not None:
+            by_kind.setdefault(fmus.kind, fmus)
     if not _native_folder():
-        return _without_native(folder, kind, found)
+        return _without_native(folder, kind, by_kind)
     if kind is None:
-        return _usual(folder, found)
-    chosen = found.get(kind)
+        return _usual(folder, by_kind)
+    chosen = by_kind.get(kind)
     if chosen is None:
         raise ModelError(_missing(folder, kind))
     if not chosen.runs_here:
@@ -63,7 +63,7 @@ def choose_fmus(folder: Path, kind: Kind | None = None) -> Choice:
 
 
 @dataclass(frozen=True)
-class _Found:
+class _FmuSet:
     """The three FMUs in a folder."""
 
     kind: Kind
@@ -96,8 +96,8 @@ def up_to_date(described: Any) -> bool:
     return not native or str(described.generationTool).endswith(native_making())
 
 
-def _usual(folder: Path, found: Mapping[Kind, _Found]) -> Choice:
-    native, python = found.get("native"), found.get("python")
+def _usual(folder: Path, by_kind: Mapping[Kind, _FmuSet]) -> Choice:
+    native, python = by_kind.get("native"), by_kind.get("python")
     if native is None:
         # If there is nothing at all, unpacking says what is missing.
         return Choice("python", folder, python.notes if python else ())
@@ -112,9 +112,9 @@ def _usual(folder: Path, found: Mapping[Kind, _Found]) -> Choice:
     return Choice("python", python.folder, (passed_over, *python.notes))
 
 
-def _without_native(folder: Path, kind: Kind | None, found: Mapping[Kind, _Found]) -> Choice:
+def _without_native(folder: Path, kind: Kind | None, by_kind: Mapping[Kind, _FmuSet]) -> Choice:
     """Choose on a platform that native FMUs of FMI 2.0 cannot be built for: nothing to note."""
-    python = found.get("python")
+    python = by_kind.get("python")
     if kind == "native" or python is None:
         raise ModelError(
             f"{folder}: native FMUs of FMI 2.0 do not exist for this platform ({PLATFORM}); build "
@@ -123,17 +123,17 @@ def _without_native(folder: Path, kind: Kind | None, found: Mapping[Kind, _Found
     return Choice("python", python.folder, python.notes)
 
 
-def _look(folder: Path) -> _Found | None:
+def _look(folder: Path) -> _FmuSet | None:
     """Return what is in ``folder``; None if not all three FMUs are."""
     paths = [folder / f"{name}.fmu" for name in PARTS.values()]
     if not all(path.is_file() for path in paths):
         return None
     described = [describe(path) for path in paths]
-    needs_python = any(one.coSimulation.needsExecutionTool for one in described)
-    return _Found(
+    needs_python = any(fmu.coSimulation.needsExecutionTool for fmu in described)
+    return _FmuSet(
         kind="python" if needs_python else "native",
         folder=folder,
-        up_to_date=all(up_to_date(one) for one in described),
+        up_to_date=all(up_to_date(fmu) for fmu in described),
         runs_here=needs_python or all(_runs_here(path) for path in paths),
     )
 

@@ -77,4 +77,4 @@ def read_participants(path: Path) -> tuple[Participant, ...]:
         Participant(name, int(seed), {field: column[row] for field, column in values.items()})
         for row, (name, seed) in enumerate(zip(ids, table.numbers["seed"], strict=True))
     ]
-    return tuple(sorted(participants, key=lambda one: one.number))
+    return tuple(sorted(participants, key=lambda person: person.number))
