@@ -38,11 +38,6 @@ def add_coupling(parser: Parser) -> None:
         help="communication step in seconds (default: 0.01)",
     )  # fmt: skip
     parser.add_argument(
-        "--fmus", type=Path, default=USUAL_FOLDER, metavar="FOLDER",
-        help=f"where pldf build put the FMUs, the native ones in its folder {NATIVE_FOLDER} "
-        f"(default: {USUAL_FOLDER})",
-    )  # fmt: skip
-    parser.add_argument(
         "--set", dest="settings", metavar="FMU.VARIABLE=VALUE", action="append", default=[],
         help="set a parameter, e.g. driver.wish.offset_mps=2 or pldf.learning.weight=0.4; FMU is "
         "pldf, vehicle or driver and may be left out where the name is clear (repeatable)",
@@ -50,11 +45,16 @@ def add_coupling(parser: Parser) -> None:
 
 
 def add_fmu(parser: argparse.ArgumentParser, usual: str) -> None:
-    """Add ``--fmu``; ``usual`` says what happens without it."""
+    """Add ``--fmu`` and ``--fmus``; ``usual`` says what happens without the first."""
     parser.add_argument(
         "--fmu", choices=KINDS,
         help="drive the native FMUs (quick) or the Python ones; the results are the same "
         f"(default: {usual})",
+    )  # fmt: skip
+    parser.add_argument(
+        "--fmus", type=Path, default=USUAL_FOLDER, metavar="FOLDER",
+        help=f"where pldf build put the FMUs, the native ones in its folder {NATIVE_FOLDER} "
+        f"(default: {USUAL_FOLDER})",
     )  # fmt: skip
 
 
