@@ -23,7 +23,7 @@ from ..recordings.recording import Recording, completed, read_recording
 from ..roads import Route
 from ..study.drive_row import DriveRow
 from ..study.phases import PHASES, Phase
-from .drives_table import check_complete, check_phase, read_drives, row_of
+from .drives_table import check_complete, check_phase, read_drives, row_of_recording
 from .questionnaire import Questionnaire, read_questionnaire
 from .statistics import Comparison, MeanInterval, compare, mean_interval
 
@@ -35,7 +35,7 @@ PARTICIPANTS_MIN: Final = 2
 _PEDALS_AND_LEVER: Final = ("brake_pedal", "set_speed_offset_mps")
 
 # Called with the number of recordings read and of all.
-Progress = Callable[[int, int], None]
+Reading = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,13 +191,13 @@ def mean_rates(
     return np.array([float(np.mean(v)) if v else np.nan for v in rates.values()])
 
 
-def analyse(study: StudyFolder, progress: Progress = lambda _done, _all: None) -> Analysis:
+def analyse(study: StudyFolder, reading: Reading = lambda _done, _all: None) -> Analysis:
     """Analyse the study in ``study.folder``.
 
     Raises:
         ModelError: naming file, line, participant and phase of what is missing or unusable.
     """
-    drives, origin = _drives(study, progress)
+    drives, origin = _drives(study, reading)
     compared = study.compared()
     check_complete(drives, [name for names in compared.values() for name in names], str(origin))
     participants = tuple(dict.fromkeys(drive.participant for drive in drives))
@@ -220,7 +220,7 @@ def analyse(study: StudyFolder, progress: Progress = lambda _done, _all: None) -
     return replace(untested, comparisons=comparisons)
 
 
-def _drives(study: StudyFolder, progress: Progress) -> tuple[list[DriveRow], Path]:
+def _drives(study: StudyFolder, reading: Reading) -> tuple[list[DriveRow], Path]:
     """Return all drives, from the table of drives if there is one, else from the recordings."""
     table = study.folder / "drives.csv"
     if table.exists():
@@ -232,8 +232,8 @@ def _drives(study: StudyFolder, progress: Progress) -> tuple[list[DriveRow], Pat
         )
     drives = []
     for number, ((participant, phase), path) in enumerate(recordings.items(), start=1):
-        drives.append(row_of(participant, phase, study.read(path), str(path)))
-        progress(number, len(recordings))
+        drives.append(row_of_recording(participant, phase, study.read(path), str(path)))
+        reading(number, len(recordings))
     return drives, study.folder / "recordings"
 
 

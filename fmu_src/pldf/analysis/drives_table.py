@@ -14,7 +14,7 @@ from ..recordings.recording import Recording
 from ..study.drive_row import DRIVES, PHASE, DriveRow
 
 
-def row_of(participant: str, phase: str, recording: Recording, where: str) -> DriveRow:
+def row_of_recording(participant: str, phase: str, recording: Recording, where: str) -> DriveRow:
     """Return what a recording with pedals and set-speed offset says about the drive."""
     rates = rates_of(recording)
     return DriveRow(

@@ -23,17 +23,6 @@ from ..files.tables import Column, Fault, Format, Table, read_table
 from ..kernel.arrays import FloatArray
 
 LAAN: Final = tuple(f"laan_{number}" for number in range(1, 10))
-LAAN_WORDS: Final = (
-    "useful - useless",
-    "pleasant - unpleasant",
-    "bad - good",
-    "nice - annoying",
-    "effective - superfluous",
-    "irritating - likeable",
-    "assisting - worthless",
-    "undesirable - desirable",
-    "raising alertness - sleep-inducing",
-)
 PROFILE: Final = tuple(f"profile_{number}" for number in range(1, 7))
 REVERSED: Final = "_reversed"
 
@@ -41,7 +30,6 @@ _USEFULNESS: Final = LAAN[0::2]
 _SATISFYING: Final = LAAN[1::2]
 _FAVOURABLE_RIGHT: Final = ("laan_3", "laan_6", "laan_8")
 SCALES: Final = {"usefulness": _USEFULNESS, "satisfying": _SATISFYING, "speed_profile": PROFILE}
-SCALE_RANGES: Final = {"usefulness": (-2, 2), "satisfying": (-2, 2), "speed_profile": (1, 5)}
 _BOXES: Final = 5
 
 GROUPS: Final = ("system", "phase")  # either says after which drives the answers were given
@@ -73,7 +61,8 @@ QUESTIONNAIRE: Final = Format(
     key=("participant", *GROUPS),
 )
 
-Key = tuple[str, str]
+# Participant and system.
+Answered = tuple[str, str]
 
 
 @dataclass(frozen=True)
@@ -86,8 +75,8 @@ class Questionnaire:
         scores: scale (a key of ``SCALES``) -> (participant, system) -> mean of its items.
     """
 
-    items: Mapping[str, Mapping[Key, float]]
-    scores: Mapping[str, Mapping[Key, float]]
+    items: Mapping[str, Mapping[Answered, float]]
+    scores: Mapping[str, Mapping[Answered, float]]
 
     def reliability(self, scale: str) -> float:
         """Return Cronbach's alpha of a scale over all answers; NaN when nothing varies."""
@@ -114,20 +103,20 @@ def read_questionnaire(path: Path, without: Collection[str] = ()) -> Questionnai
     table = read_table(path, QUESTIONNAIRE, {"participant": without})
     scales = _scales_of(table)
     keys = _keys(table)
-    found: dict[str, dict[Key, list[float]]] = {}
+    answers_of: dict[str, dict[Answered, list[float]]] = {}
     for item in (item for scale in scales for item in SCALES[scale]):
-        answers = found[item] = {}
+        answers = answers_of[item] = {}
         for key, value in zip(keys, _scored(table, item).tolist(), strict=True):
             answers.setdefault(key, []).append(value)
-    return _with_scores(found, scales)
+    return _with_scores(answers_of, scales)
 
 
 def _with_scores(
-    found: Mapping[str, Mapping[Key, Sequence[float]]], scales: Sequence[str]
+    answers_of: Mapping[str, Mapping[Answered, Sequence[float]]], scales: Sequence[str]
 ) -> Questionnaire:
     items = {
         item: {key: float(np.mean(values)) for key, values in answers.items()}
-        for item, answers in found.items()
+        for item, answers in answers_of.items()
     }
     scores = {
         scale: {
@@ -164,7 +153,7 @@ def _columns_of(table: Table, item: str) -> list[str]:
     return [name for name in (item, item + REVERSED) if name in table]
 
 
-def _keys(table: Table) -> list[Key]:
+def _keys(table: Table) -> list[Answered]:
     """Return participant and system of each row; nobody answers twice after the same drives."""
     group = next(name for name in GROUPS if name in table)
     answered = list(zip(table.texts["participant"], table.texts[group], strict=True))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Callable, Iterator, Mapping, Set
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module, invalidate_caches, metadata
@@ -17,6 +17,9 @@ from ..fmi.slave import ModelSlave
 from .archive import read_members, with_guid, with_version, write_archive
 from .documentation import IN_PYTHON, document
 from .isolate import copy_file, copy_package, digest, packed_files
+
+# Called with each piece of work when it begins.
+Announce = Callable[[str], None]
 
 
 @dataclass(frozen=True)

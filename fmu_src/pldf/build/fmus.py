@@ -6,7 +6,7 @@ Everything that a build needs lies in the installed packages. The same sources g
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Final
@@ -14,16 +14,15 @@ from typing import Final
 from fmpy.validation import validate_fmu  # type: ignore[import-untyped]
 
 from ..build_version import build_version
+from ..cosim.kinds import NATIVE_FOLDER
 from ..cosim.master import unpacked
 from ..cosim.platforms import PLATFORMS
 from ..errors import ModelError
-from .builder import Package, Recipe, build
+from .builder import Announce, Package, Recipe, build
 from .packages import write_packages, write_sources
 
 HERE: Final = Path(__file__).resolve().parent
 RUNTIME: Final = HERE / "runtime"
-# Where native FMUs go: below the folder of the Python ones.
-NATIVE_FOLDER: Final = "native"
 # What the extra ``native`` brings.
 EXTRA: Final = ("lief", "llvmlite", "ziglang")
 NEEDS_EXTRA: Final = "run: pip install 'adaptive-pldf[native]'"
@@ -81,9 +80,6 @@ NATIVE: Final = {
     "LongitudinalVehicle": "vehicle_models.native:VEHICLE",
     "ScriptedDriver": "vehicle_models.native:DRIVER",
 }
-
-# Called with each piece of work when it begins.
-Announce = Callable[[str], None]
 
 
 def build_python(name: str, out: Path, announce: Announce) -> list[Path]:

@@ -8,13 +8,13 @@ from typing import Final, Literal
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.progress import Progress
 from rich.table import Table
 
 from ..analysis.analysis import RATES, Analysis, StudyFolder, analyse
 from ..analysis.analysis_tables import write_tables
 from ..analysis.published import DRIVERS, TESTS, published_means
 from ..analysis.questionnaire import SCALES
+from .shared.progress import progress_bar
 from .shared.road import add_road, chosen_road
 
 EXAMPLE: Final = (
@@ -67,9 +67,8 @@ def run(options: argparse.Namespace) -> None:
     """Analyse, write the tables, print what was found and where it is."""
     road = chosen_road(options)
     study = StudyFolder(options.folder, road.route if road else None, frozenset(options.without))
-    with Progress(transient=True) as bar:
-        task = bar.add_task("recordings", total=None)
-        analysis = analyse(study, lambda done, all_: bar.update(task, completed=done, total=all_))
+    with progress_bar("recordings", len(study.recordings()), "") as bar:
+        analysis = analyse(study, lambda done, _: bar.update(bar.task_ids[0], completed=done))
     written = write_tables(analysis, options.out or options.folder / "analysis")
     console = Console()
     console.print(_means(analysis))

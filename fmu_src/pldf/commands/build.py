@@ -7,6 +7,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Final
 
+from ..cosim.kinds import NATIVE_FOLDER
 from ..cosim.platforms import PLATFORMS
 from ..errors import ModelError
 
@@ -61,7 +62,7 @@ def run(options: argparse.Namespace) -> None:
     for number, name in enumerate(names, start=1):
         made += _build(f"[{number}/{len(names)}] {name}", name, options)
     if not options.only:
-        folder = options.out / fmus.NATIVE_FOLDER if options.native else options.out
+        folder = options.out / NATIVE_FOLDER if options.native else options.out
         written = fmus.build_packages(folder, made, options.ssp_sources)
         if written:
             print(f"{folder}: {', '.join(path.name for path in written)} (valid)")
@@ -77,6 +78,9 @@ def _build(label: str, name: str, options: argparse.Namespace) -> list[Path]:
             paths = fmus.build_native(name, options.out, options.target, work.begin)
         else:
             paths = fmus.build_python(name, options.out, work.begin)
+    except OSError:
+        work.end("failed")
+        raise
     except ValueError as problem:
         work.end("failed")
         raise ModelError(f"{name}: {problem}") from None

@@ -16,7 +16,6 @@ from ..errors import ModelError
 from .palette import GRID
 from .scene import Axis, Band, Boxes, Fill, Line, Note, Panel, Scene, Stroke
 
-ENDINGS: Final = (".png", ".pdf", ".svg")
 DOTS_PER_INCH: Final = 150
 _AROUND_IN: Final = 1.2  # title, axis and legend
 _CHARACTERS_PER_IN: Final = 13.0  # of the legend's letters

@@ -168,7 +168,9 @@ class Simulation:
         st = PldfState()
         unpack(pldf, st)
         return DriveResult(
-            row=row_of(person, phase, number + 1, (steps - 1) * ends.step_s, st, arrays.profile),
+            row=row_of_drive(
+                person, phase, number + 1, (steps - 1) * ends.step_s, st, arrays.profile
+            ),
             recording=_recording(rows, steps, ends.step_s) if kept else None,
             iteration=self._learn(pldf, arrays, stored) if phase.learn else None,
         )
@@ -206,7 +208,7 @@ class Person(NamedTuple):
         return st
 
 
-def row_of(
+def row_of_drive(
     person: Person,
     phase: Phase,
     position: int,

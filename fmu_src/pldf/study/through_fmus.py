@@ -16,7 +16,7 @@ from ..profiles.store import ProfileStore
 from ..profiles.stored_profile import StoredProfile
 from .participants import DRIVER_SIGNALS, DriveResult, Participant, StudySettings, order_of
 from .phases import DriveSetting, Phase, seed_of_drive, values_of
-from .simulation import prepared, row_of
+from .simulation import prepared, row_of_drive
 
 # Called now and then with the number of this participant's drives that are done, 2.5 for example.
 Watch = Callable[[float], None]
@@ -80,7 +80,7 @@ class _Driver:
         _require_good(f"participant {participant.id}, drive {phase.name}", done)
         duration_s = float(done.recording["time_s"][-1])
         return DriveResult(
-            row=row_of(self._person, phase, number + 1, duration_s, _outputs(done), followed),
+            row=row_of_drive(self._person, phase, number + 1, duration_s, _outputs(done), followed),
             recording=done.recording if participant.id in self._settings.recorded else None,
             iteration=self._stored().iterations[-1] if phase.learn else None,
             warnings=tuple(m for m in done.messages if m.level == "warning"),

@@ -18,7 +18,7 @@ from ...fmi.description import Model, model_description
 from ...fmi.slave import LOG_CATEGORIES
 from ...kernel.signals import Signal
 from ..archive import DESCRIPTION, guid_of, with_guid, with_version, write_archive
-from ..builder import license_of
+from ..builder import Announce, license_of
 from ..description3 import model_description3
 from ..documentation import as_machine_code, document
 from .language import check_language
@@ -79,7 +79,7 @@ class NativeRecipe:
 
 
 def build_native(
-    recipe: NativeRecipe, targets: Sequence[str], out: Path, tell: Callable[[str], None]
+    recipe: NativeRecipe, targets: Sequence[str], out: Path, announce: Announce
 ) -> list[Path]:
     """Build the archives of one model.
 
@@ -87,7 +87,7 @@ def build_native(
         recipe: what to build.
         targets: names in ``TARGETS``.
         out: gets ``NAME.fmu`` (FMI 2.0, unless no target is known there) and ``fmi3/NAME.fmu``.
-        tell: is told what is being done.
+        announce: hears what is being done.
 
     Returns:
         The paths of the archives.
@@ -97,7 +97,7 @@ def build_native(
     """
     module, _, name = recipe.model.partition(":")
     model: NativeModel = getattr(importlib.import_module(module), name)
-    tell("compile the kernel")
+    announce("compile the kernel")
     check_language(model.modules, model.record)
     objects = compile_objects(recipe.model, targets)
     contents = [_contents(recipe, model, standard, targets) for standard in (_FMI2, _FMI3)]
@@ -108,9 +108,9 @@ def build_native(
         folder = Path(temporary)
         _write_tables(folder, header(model), source(model, guid, token))
         for target in targets:
-            tell(f"link {target}")
+            announce(f"link {target}")
             (folder / f"{target}.o").write_bytes(objects[target])
-            library = link(folder, recipe.runtime, target, model.name, tell)
+            library = link(folder, recipe.runtime, target, model.name, announce)
             check_library(library)
             libraries[target] = library.read_bytes()
     ready = ((_FMI2, with_guid(contents[0], guid)), (_FMI3, with_guid(contents[1], token)))
@@ -135,21 +135,21 @@ def _write_tables(folder: Path, head: str, body: str) -> None:
 
 def _folders(standard: _Standard, targets: Iterable[str]) -> dict[str, list[str]]:
     """Return the folders of an archive's libraries, and for which targets each is."""
-    found: dict[str, list[str]] = {}
+    targets_of: dict[str, list[str]] = {}
     for target in targets:
         if standard.folder(target):
-            found.setdefault(standard.folder(target), []).append(target)
-    return found
+            targets_of.setdefault(standard.folder(target), []).append(target)
+    return targets_of
 
 
 def _binaries(standard: _Standard, name: str, libraries: Mapping[str, bytes]) -> dict[str, bytes]:
     """Return the libraries by their place in an archive; those in one folder become one."""
-    found = {}
+    libraries_at = {}
     for folder, targets in _folders(standard, libraries).items():
         parts = [libraries[target] for target in targets]
         place = f"binaries/{folder}/{name}{TARGETS[targets[0]].suffix}"
-        found[place] = parts[0] if len(parts) == 1 else universal(parts)
-    return found
+        libraries_at[place] = parts[0] if len(parts) == 1 else universal(parts)
+    return libraries_at
 
 
 def _inner(recipe: NativeRecipe, model: NativeModel) -> dict[str, bytes]:
@@ -169,7 +169,7 @@ def _contents(
     about = Model(model.name, model.about, shown, 300.0, native=True)
     root = standard.describe(about, LOG_CATEGORIES)
     tool = f"{root.get('generationTool')} {native_making()}"
-    root.set("generationTool", tool)  # by which ``study.which_fmus`` knows older ones
+    root.set("generationTool", tool)  # by which ``cosim.which_fmus`` knows older ones
     indent(root)
     description: Any = tostring(root, encoding="UTF-8", xml_declaration=True)
     licenses = dict(_licenses(targets))

@@ -13,6 +13,7 @@ from typing import Final
 import fmpy  # type: ignore[import-untyped]
 
 from ...cosim.platforms import TARGETS
+from ..builder import Announce
 
 HEADERS: Final = Path(str(fmpy.__file__)).parent / "c-code"
 FLAGS: Final = (
@@ -30,7 +31,7 @@ def zig(target: str, *arguments: str | Path) -> list[str]:
     return [*compiler, *map(str, arguments)]
 
 
-def link(folder: Path, runtime: Path, target: str, name: str, tell: Callable[[str], None]) -> Path:
+def link(folder: Path, runtime: Path, target: str, name: str, announce: Announce) -> Path:
     """Link a model with the C runtime; return the library, in a folder of its own.
 
     Args:
@@ -39,7 +40,7 @@ def link(folder: Path, runtime: Path, target: str, name: str, tell: Callable[[st
         runtime: folder of the C sources.
         target: name in ``TARGETS``.
         name: of the model, without suffix.
-        tell: is told when zig has to compile the platform's C library first.
+        announce: hears when zig has to compile the platform's C library first.
 
     Raises:
         ValueError: compiler or linker refuse; the text is theirs.
@@ -52,7 +53,9 @@ def link(folder: Path, runtime: Path, target: str, name: str, tell: Callable[[st
     elif TARGETS[target].suffix == ".dylib":
         program += [f"-Wl,-install_name,@rpath/{library.name}"]
     program += [*map(str, sorted(runtime.glob("*.c"))), "table.c", f"{target}.o"]
-    problem = _run(program, folder, lambda: tell(f"zig compiles the C library of {target} once"))
+    problem = _run(
+        program, folder, lambda: announce(f"zig compiles the C library of {target} once")
+    )
     if problem:
         raise ValueError(f"linking for {target} failed:\n{problem[-2000:]}")
     return folder / library
