@@ -128,10 +128,10 @@ def _in_fmpy(dist: Path, name: str) -> dict[str, float]:
         "native_fmi2": dist / "native" / f"{name}.fmu",
         "native_fmi3": dist / "native" / "fmi3" / f"{name}.fmu",
     }
-    found = {kind: path for kind, path in paths.items() if path.is_file()}
+    built = {kind: path for kind, path in paths.items() if path.is_file()}
     with redirect_stdout(sys.stderr):  # fmpy prints there what an FMU says
-        rounds = [{k: time_fmu(p, CRUISE).step_s for k, p in found.items()} for _ in range(ROUNDS)]
-    steps = {f"{kind}_step_s": median(times[kind] for times in rounds) for kind in found}
+        rounds = [{k: time_fmu(p, CRUISE).step_s for k, p in built.items()} for _ in range(ROUNDS)]
+    steps = {f"{kind}_step_s": median(times[kind] for times in rounds) for kind in built}
     return {**steps, "python_to_native": steps["python_fmi2_step_s"] / steps["native_fmi2_step_s"]}
 
 

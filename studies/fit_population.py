@@ -83,13 +83,13 @@ class Fit:
     def rates(self, factors: FloatArray) -> FloatArray:
         """Return the mean pedal, set-speed and combined rates in percent."""
         people = sample_participants(self.people, SEED, fitted(factors))
-        found = {
+        rates_of = {
             done.participant: [
                 (row.pedal_rate, row.set_speed_rate, row.combined_rate) for row in done.rows
             ]
             for done in in_processes(self.jobs)(self.job, people)
         }
-        means = 100.0 * np.mean([found[person.id] for person in people], axis=(0, 1))
+        means = 100.0 * np.mean([rates_of[person.id] for person in people], axis=(0, 1))
         self.log.append((factors.copy(), means))
         print(
             f"{len(self.log):3d}  factors {_numbers(factors)}  rates {_numbers(means)}", flush=True
@@ -98,13 +98,13 @@ class Fit:
 
     def run(self) -> FloatArray:
         """Return the factors that the fit ends with, to four decimals."""
-        found = least_squares(
+        fit = least_squares(
             lambda factors: np.append(self.rates(factors) - TARGETS, PULL * np.log(factors)),
             START, bounds=BOUNDS, diff_step=DIFFERENCE_STEP, xtol=CLOSE_ENOUGH,
             max_nfev=EVALUATIONS_MAX,
         )  # fmt: skip
-        self.reached = next(m for tried, m in self.log if np.array_equal(tried, found.x))
-        return np.round(found.x, 4)
+        self.reached = next(m for tried, m in self.log if np.array_equal(tried, fit.x))
+        return np.round(fit.x, 4)
 
 
 def _numbers(values: FloatArray) -> str:

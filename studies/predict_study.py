@@ -36,24 +36,24 @@ COMPARED: Final = {"A": ("A1", "A2"), "B": ("B1", "B2")}
 def drive_studies(distribution: Distribution, studies: int, jobs: int) -> FloatArray:
     """Return rates[study, person, drive, measure] in percent; drives are A1, A2, B1, B2."""
     settings = StudySettings(road=open_road("study"), phases=tuple(PHASES.values()))
-    people = [one for seed in range(studies) for one in study_people(seed, distribution)]
+    people = [person for seed in range(studies) for person in study_people(seed, distribution)]
     drives = [name for names in COMPARED.values() for name in names]
-    found: dict[str, list[list[float]]] = {}
+    rates_of: dict[str, list[list[float]]] = {}
     for count, done in enumerate(in_processes(jobs)(Job(settings), people), 1):
         by_phase = {row.phase: row for row in done.rows}
-        found[done.participant] = [
+        rates_of[done.participant] = [
             [getattr(by_phase[name], f"{measure}_rate") for measure in MEASURES] for name in drives
         ]
         if count % DRIVERS == 0:
             print(f"{count} of {len(people)} drivers", file=sys.stderr)
-    rates = 100.0 * np.array([found[person.id] for person in people])
+    rates = 100.0 * np.array([rates_of[person.id] for person in people])
     return rates.reshape(studies, DRIVERS, len(drives), len(MEASURES))
 
 
 def study_people(seed: int, distribution: Distribution) -> list[Participant]:
     """Return the people of study ``seed``, from 0, numbered on from study to study."""
     people = sample_participants(DRIVERS, seed + 1, distribution)
-    return [replace(one, id=f"P{seed * DRIVERS + one.number:05d}") for one in people]
+    return [replace(person, id=f"P{seed * DRIVERS + person.number:05d}") for person in people]
 
 
 def tables(rates: FloatArray) -> str:

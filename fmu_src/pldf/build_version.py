@@ -63,7 +63,7 @@ def native_making() -> str:
 
 def _sources(patterns_of: Mapping[str, Sequence[str]]) -> dict[str, Path]:
     """Return files by package and relative path."""
-    found = {}
+    path_of = {}
     for package, patterns in patterns_of.items():
         spec = find_spec(package)
         if spec is None or not spec.submodule_search_locations:
@@ -72,8 +72,8 @@ def _sources(patterns_of: Mapping[str, Sequence[str]]) -> dict[str, Path]:
         paths = {path for pattern in patterns for path in folder.glob(pattern)}
         for path in paths:
             if path.is_file():
-                found[f"{package}/{path.relative_to(folder).as_posix()}"] = path
-    return found
+                path_of[f"{package}/{path.relative_to(folder).as_posix()}"] = path
+    return path_of
 
 
 def _digest(sources: dict[str, Path]) -> str:

@@ -63,16 +63,18 @@ def _tests(analysis: Analysis) -> list[Sequence[Cell]]:
     count = len(analysis.participants)
     return [
         heading,
-        *((name, count, *_cells(found)) for name, found in analysis.comparisons.items()),
+        *((name, count, *_cells(comparison)) for name, comparison in analysis.comparisons.items()),
     ]
 
 
-def _cells(found: Comparison) -> Sequence[Cell]:
-    t, ranks, difference = found.t, found.signed_rank, found.difference
+def _cells(comparison: Comparison) -> Sequence[Cell]:
+    t, ranks, difference = comparison.t, comparison.signed_rank, comparison.difference
     return (
-        found.mean_first, found.mean_second, difference.value, difference.low, difference.high,
+        comparison.mean_first, comparison.mean_second,
+        difference.value, difference.low, difference.high,
         t.t, t.df, t.p, ranks.w, ranks.pairs, ranks.zeros, ranks.p, ranks.method,
-        ranks.p_normal, ranks.p_corrected, found.d_z, found.rank_biserial, found.fell,
+        ranks.p_normal, ranks.p_corrected,
+        comparison.d_z, comparison.rank_biserial, comparison.fell,
     )  # fmt: skip
 
 
@@ -82,6 +84,8 @@ def _items(analysis: Analysis) -> list[Sequence[Cell]]:
     rows: list[Sequence[Cell]] = [("item", "mean_a", "mean_b", "w", "pairs", "p_wilcoxon")]
     for item, answers in analysis.questionnaire.items.items():
         a, b = ([answers[name, system] for name in analysis.participants] for system in "AB")
-        ranks = (found := compare(a, b)).signed_rank
-        rows.append((item, found.mean_first, found.mean_second, ranks.w, ranks.pairs, ranks.p))
+        ranks = (comparison := compare(a, b)).signed_rank
+        rows.append(
+            (item, comparison.mean_first, comparison.mean_second, ranks.w, ranks.pairs, ranks.p)
+        )
     return rows

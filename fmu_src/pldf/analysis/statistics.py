@@ -129,8 +129,8 @@ def paired_t(first: ArrayLike, second: ArrayLike) -> PairedT:
     if _spread(d) <= 0.0:
         t = _without_spread(d)
         return PairedT(t, len(d) - 1, 0.0 if t else 1.0)
-    found = scipy.stats.ttest_rel(np.asarray(first, float), np.asarray(second, float))
-    return PairedT(float(found.statistic), int(found.df), float(found.pvalue))
+    result = scipy.stats.ttest_rel(np.asarray(first, float), np.asarray(second, float))
+    return PairedT(float(result.statistic), int(result.df), float(result.pvalue))
 
 
 def signed_rank(first: ArrayLike, second: ArrayLike) -> SignedRank:
@@ -159,8 +159,8 @@ def _wilcoxon(
 ) -> tuple[float, float]:
     """Return statistic and p value of differences that are not zero."""
     # The stubs know "asymptotic" by its older name only.
-    found = scipy.stats.wilcoxon(d, method=method, correction=correction)  # type: ignore[arg-type]
-    return float(found.statistic), float(found.pvalue)
+    result = scipy.stats.wilcoxon(d, method=method, correction=correction)  # type: ignore[arg-type]
+    return float(result.statistic), float(result.pvalue)
 
 
 def cohen_dz(first: ArrayLike, second: ArrayLike) -> float:

@@ -63,25 +63,25 @@ def model_description3(model: Model, log_categories: Mapping[str, str]) -> Eleme
 
 
 def _types(root: Element, signals: tuple[Signal, ...]) -> None:
-    found = enumerations(signals)
-    if not found:
+    used = enumerations(signals)
+    if not used:
         return
     definitions = SubElement(root, "TypeDefinitions")
-    for name, enumeration in found.items():
+    for name, enumeration in used.items():
         add_items(SubElement(definitions, "EnumerationType", {"name": name}), enumeration)
 
 
 def _variable(signal: Signal, reference: int) -> Element:
-    said = {**attributes(signal, reference), **type_attributes(signal)}
-    start = said.pop("start", None) if signal.kind == "String" else None
-    variable = Element(_TYPES.get(signal.kind, signal.kind), said)
+    described = {**attributes(signal, reference), **type_attributes(signal)}
+    start = described.pop("start", None) if signal.kind == "String" else None
+    variable = Element(_TYPES.get(signal.kind, signal.kind), described)
     if start is not None:
         SubElement(variable, "Start", {"value": start})
     return variable
 
 
 def _time(reference: int) -> Element:
-    said = {
+    described = {
         "name": _TIME,
         "valueReference": str(reference),
         "description": "Simulation time",
@@ -89,7 +89,7 @@ def _time(reference: int) -> Element:
         "variability": "continuous",
         "unit": "s",
     }
-    return Element("Float64", said)
+    return Element("Float64", described)
 
 
 def _unknowns(signals: tuple[Signal, ...]) -> Iterable[Element]:

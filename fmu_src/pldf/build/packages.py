@@ -53,15 +53,15 @@ def sources(fmus: Mapping[str, Fmu]) -> dict[str, bytes]:
         step_s=STEP_S,
     )
     try:
-        found = {ssp.STRUCTURE: ssp.structure(system)}
+        texts = {ssp.STRUCTURE: ssp.structure(system)}
         for drive, phase in enumerate(PHASES.values()):
             values = start_values(phase, drive)
-            for one in components:
-                text = ssp.parameter_set(one.signals, values[one.name])
-                found[f"{phase.name}/{one.name}.ssv"] = text
+            for component in components:
+                text = ssp.parameter_set(component.signals, values[component.name])
+                texts[f"{phase.name}/{component.name}.ssv"] = text
     except ValueError as problem:
         raise ModelError(f"SSP packages: {problem}") from None
-    return found
+    return texts
 
 
 def start_values(phase: Phase, drive: int) -> dict[str, dict[str, Value]]:

@@ -80,7 +80,10 @@ def structure(system: System) -> bytes:
     root = Element("ssd:SystemStructureDescription", attributes)
     top = SubElement(root, "ssd:System", {"name": "root"})
     elements = SubElement(top, "ssd:Elements")
-    carried = {one.name: _connectors(one, system.connections) for one in system.components}
+    carried = {
+        component.name: _connectors(component, system.connections)
+        for component in system.components
+    }
     for component in system.components:
         _component(elements, component, carried[component.name])
     connections = SubElement(top, "ssd:Connections")

@@ -44,9 +44,9 @@ def read_citation() -> dict[str, Any]:
 def paper_entry(paper: Mapping[str, Any]) -> str:
     """Return the BibTeX entry of a paper on arXiv."""
     number = next(
-        one["value"].removeprefix(_ARXIV)
-        for one in paper["identifiers"]
-        if one["value"].startswith(_ARXIV)
+        identifier["value"].removeprefix(_ARXIV)
+        for identifier in paper["identifiers"]
+        if identifier["value"].startswith(_ARXIV)
     )
     return _entry(
         "misc",
@@ -80,10 +80,10 @@ def software_entry(software: Mapping[str, Any]) -> str:
 def _authors(work: Mapping[str, Any]) -> str:
     """Return BibTeX's list of names; a name of several words that is no person's stays whole."""
     return " and ".join(
-        f"{one['family-names']}, {one['given-names']}"
-        if "family-names" in one
-        else ("others" if one == _OTHERS else f"{{{one['name']}}}")
-        for one in work["authors"]
+        f"{author['family-names']}, {author['given-names']}"
+        if "family-names" in author
+        else ("others" if author == _OTHERS else f"{{{author['name']}}}")
+        for author in work["authors"]
     )
 
 

@@ -73,8 +73,8 @@ def _installation(findings: Findings) -> None:
 
 def _requirements(extra: str = "") -> list[Requirement]:
     """Return what the package needs in this environment, or what one of its extras adds."""
-    found = [Requirement(text) for text in requires(_PACKAGE) or ()]
-    return [one for one in found if _counts(one, extra) and not (extra and _counts(one, ""))]
+    needed = [Requirement(text) for text in requires(_PACKAGE) or ()]
+    return [each for each in needed if _counts(each, extra) and not (extra and _counts(each, ""))]
 
 
 def _counts(requirement: Requirement, extra: str) -> bool:

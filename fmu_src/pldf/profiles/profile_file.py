@@ -239,9 +239,9 @@ def _check_sum(data: bytes, file: str) -> None:
     end = len(data) - CHECKSUM_SIZE
     line = _checksum_line(zlib.crc32(memoryview(data)[:end]))
     if data[end:] != line:
-        found = ascii(data[end:].decode("latin-1").rstrip("\n"))
+        stated = ascii(data[end:].decode("latin-1").rstrip("\n"))
         _refuse(
-            file, f"byte {end}", f"damaged: checksum line is {found}, not '{line[:-1].decode()}'"
+            file, f"byte {end}", f"damaged: checksum line is {stated}, not '{line[:-1].decode()}'"
         )
 
 

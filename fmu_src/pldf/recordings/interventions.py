@@ -43,19 +43,19 @@ def pedal_interventions(recording: Recording) -> list[Interval]:
     last_row = len(recording) - 1
     gas = mode == GAS_OVERRIDE
     inactive = (gas | (mode == STANDBY)) & _after_activation(mode)
-    found: list[Interval] = []
+    intervals: list[Interval] = []
     for first, behind in _runs(inactive):
         start = _start(recording, first, behind)
         if start < 0:
             continue
         stop = min(behind, last_row)
         braked = bool(np.any(mode[start:behind] == STANDBY))
-        previous = found[-1] if found else None
+        previous = intervals[-1] if intervals else None
         if previous and recording["time_s"][start] - recording["time_s"][previous.last] < GAP_S:
-            found.pop()
+            intervals.pop()
             start, braked = previous.first, braked or previous.kind == "brake"
-        found.append(Interval("brake" if braked else "gas", start, stop))
-    return found
+        intervals.append(Interval("brake" if braked else "gas", start, stop))
+    return intervals
 
 
 def set_speed_interventions(recording: Recording) -> list[Interval]:

@@ -80,15 +80,15 @@ def _most_telling(learned: Learned) -> int | None:
     function, new = learned.function, learned.iteration
     st, trace = function.record, function.trace
     change = np.abs(new.learned_mps - np.asarray(function.profile.learned_mps))
-    found = []
+    candidates = []
     for k in range(st.drive_interventions):
         mine = (new.intervention == k + 1) & (new.drive == new.number)
         whole = trace.start_m[k] < trace.end_m[k] <= st.first_node + st.nodes - 1
         if mine.any() and whole:
             alpha = stretch_factor(st, function.route, trace, k)
             seen = min(float(change[mine].max()), _INTERESTING_MPS)
-            found.append((seen, alpha, -k))
-    return -max(found)[2] if found else None
+            candidates.append((seen, alpha, -k))
+    return -max(candidates)[2] if candidates else None
 
 
 def _steps(learned: Learned, k: int, mean_mps: FloatArray) -> Steps:

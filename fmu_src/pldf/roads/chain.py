@@ -127,14 +127,14 @@ class Network:
 
 
 def _by_id(elements: Iterable[Element], place: Place) -> dict[str, Element]:
-    found: dict[str, Element] = {}
+    by_id: dict[str, Element] = {}
     for element in elements:
         name = element.attributes.get("id", "")
-        if name in found:
-            text = f"id {name!r} is that of line {found[name].line} too; ids must differ"
+        if name in by_id:
+            text = f"id {name!r} is that of line {by_id[name].line} too; ids must differ"
             raise place.error(element, f"<{element.tag}> {text}")
-        found[name] = element
-    return found
+        by_id[name] = element
+    return by_id
 
 
 def _link(road: Element, end: str) -> Element | None:

@@ -69,10 +69,10 @@ def first_fault(knots: dict[str, FloatArray]) -> tuple[int, str] | None:
     s_m = knots["s_m"]
     if len(s_m) == 0:
         return 0, "there are no knots: a route needs at least two"
-    faults = [_first(~np.isfinite(values), _not_finite(name)) for name, values in knots.items()]
-    found = [fault for fault in faults if fault is not None] or _numeric_faults(knots)
-    if found:
-        index, text = min(found, key=lambda fault: fault[0])
+    not_finite = [_first(~np.isfinite(values), _not_finite(name)) for name, values in knots.items()]
+    faults = [fault for fault in not_finite if fault is not None] or _numeric_faults(knots)
+    if faults:
+        index, text = min(faults, key=lambda fault: fault[0])
         return index, text.format(**{name: float(values[index]) for name, values in knots.items()})
     if s_m[-1] < LENGTH_MIN_M:
         return len(s_m) - 1, f"the route is {s_m[-1]:g} m long; it must be at least 2 m long"

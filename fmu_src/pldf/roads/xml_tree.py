@@ -60,8 +60,8 @@ class Place:
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            found = "is missing" if text is None else f"= {text[:40]!r} is not a finite number"
-            raise self.error(element, f"<{element.tag}> attribute {name} {found}")
+            problem = "is missing" if text is None else f"= {text[:40]!r} is not a finite number"
+            raise self.error(element, f"<{element.tag}> attribute {name} {problem}")
         return value
 
 

@@ -87,12 +87,14 @@ def _in_pool(job: Job, participants: list[Participant], count: int) -> ResultStr
     pool = ProcessPoolExecutor(count, mp_context=context, initializer=_begin, initargs=(job,))
     try:
         waiting = iter(participants)
-        pending = {pool.submit(_unit, one) for one in islice(waiting, _AHEAD * count)}
+        pending = {
+            pool.submit(_unit, participant) for participant in islice(waiting, _AHEAD * count)
+        }
         while pending:
             finished, pending = wait(pending, return_when=FIRST_COMPLETED)
             for future in finished:
                 yield future.result()
-                pending |= {pool.submit(_unit, one) for one in islice(waiting, 1)}
+                pending |= {pool.submit(_unit, participant) for participant in islice(waiting, 1)}
     except BrokenProcessPool:
         raise ModelError(
             "a process of the study was killed (out of memory?); the participants that were done "
@@ -140,7 +142,10 @@ def on_cluster(address: str) -> Run:
         with client:
             # As a task, not scattered: it is made anew when the worker that holds it dies.
             shared = client.submit(_same, job, pure=False)
-            units = [client.submit(do_unit, shared, one, pure=False) for one in participants]
+            units = [
+                client.submit(do_unit, shared, participant, pure=False)
+                for participant in participants
+            ]
             try:
                 for unit in distributed.as_completed(units):
                     yield unit.result()

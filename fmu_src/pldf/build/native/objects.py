@@ -193,8 +193,8 @@ def _reason(error: Exception) -> str:
         return f"{type(error).__name__}: {text}"
     file, number = calls[0]
     more = [x for x in told[1:3] if x.startswith(">>>")]
-    said = " ".join([*told[:1], *more])
-    return f"{file}:{number}: {said}\n    {linecache.getline(file, number).strip()}"
+    reason = " ".join([*told[:1], *more])
+    return f"{file}:{number}: {reason}\n    {linecache.getline(file, number).strip()}"
 
 
 if __name__ == "__main__":

@@ -48,12 +48,12 @@ def check_library(path: Path) -> None:
 
 def needed_by_object(data: bytes) -> set[str]:
     """Return the names that an object file leaves open."""
-    found: Any = lief.COFF.parse(list(data)) if _is_coff(data) else lief.parse(data)
-    if isinstance(found, lief.ELF.Binary):
-        return {str(s.name) for s in found.symbols if s.shndx == 0 and s.name}
-    if isinstance(found, lief.MachO.Binary):
-        return {str(s.name)[1:] for s in found.symbols if s.is_external}
-    return {str(s.name) for s in found.symbols if s.section_idx == 0}
+    parsed: Any = lief.COFF.parse(list(data)) if _is_coff(data) else lief.parse(data)
+    if isinstance(parsed, lief.ELF.Binary):
+        return {str(s.name) for s in parsed.symbols if s.shndx == 0 and s.name}
+    if isinstance(parsed, lief.MachO.Binary):
+        return {str(s.name)[1:] for s in parsed.symbols if s.is_external}
+    return {str(s.name) for s in parsed.symbols if s.section_idx == 0}
 
 
 def _is_coff(data: bytes) -> bool:

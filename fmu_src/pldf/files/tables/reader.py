@@ -77,8 +77,8 @@ class Table:
 
     def refuse(self, faults: Iterable[Fault]) -> None:
         """Raise TableError if there are ``faults``."""
-        if found := tuple(faults):
-            raise TableError(self.path, found)
+        if every := tuple(faults):
+            raise TableError(self.path, every)
 
 
 def read_table(
@@ -165,9 +165,9 @@ def _fill(
 def _too_few(table: Table) -> Iterator[Fault]:
     rows, least = len(table), table.form.rows_min
     if rows < least:
-        found = f"{rows or 'no'} {table.form.row}{'' if rows == 1 else 's'} below the header"
+        present = f"{rows or 'no'} {table.form.row}{'' if rows == 1 else 's'} below the header"
         more = f"; at least {least} are needed" if least > 1 else ""
-        yield Fault(0, "", f"{found} (line {table.header_line}){more}")
+        yield Fault(0, "", f"{present} (line {table.header_line}){more}")
 
 
 def _has(form: Format) -> str:
@@ -221,8 +221,8 @@ def _positions(table: Table, header: Sequence[str]) -> dict[str, int]:
     unknown = [name for name in names if name not in form.names] if form.closed else []
     missing = [c.name for c in form.columns if c.needed and c.name not in names]
     twice = [name for name in form.names if names.count(name) > 1]
-    found = (("missing", missing), ("repeated", twice), ("unknown", unknown))
-    told = [f"{what} column {', '.join(which)[:_HEADER_MAX]}" for what, which in found if which]
+    wrong = (("missing", missing), ("repeated", twice), ("unknown", unknown))
+    told = [f"{what} column {', '.join(which)[:_HEADER_MAX]}" for what, which in wrong if which]
     if missing and len(names) == 1 and re.search("[;\t]", names[0]):
         told.append(f"the header is {names[0][:_CELL_MAX]!r}, commas separate columns")
     if told:

@@ -184,8 +184,8 @@ def _pedal_lines(number: int, name: str, recording: Recording) -> list[Element]:
     rows, stroke = thinned(recording), replace(_stroke(number), width_pt=1.1)
     label = f"Speed driven in {name}"
     return [
-        Line(rows["s_m"] * KM, sign * 100.0 * rows[column], stroke, label, listed=False, name=said)
-        for column, sign, said in (
+        Line(rows["s_m"] * KM, sign * 100.0 * rows[column], stroke, label, listed=False, name=pedal)
+        for column, sign, pedal in (
             ("gas_pedal", 1.0, f"Gas pedal in {name}"),
             ("brake_pedal", -1.0, f"Brake pedal (negative) in {name}"),
         )

@@ -99,14 +99,14 @@ def _rates_of(analysis: Analysis, measure: str) -> tuple[Element, ...]:
         100.0 * np.array([getattr(interval, end) for interval in intervals])
         for end in ("value", "low", "high")
     )
-    said = tuple(
+    hover_texts = tuple(
         f"{drive}: mean {m:.1f} %\n95 %: {a:.1f} to {b:.1f} %"
         for drive, m, a, b in zip(drives, mean, low, high, strict=True)
     )
     return (
         _people(analysis, measure),
         Band(places, low, high, Fill(palette.BLUE, 0.28), "95 % confidence band"),
-        Line(places, mean, _MEAN, "Mean", hover=said),
+        Line(places, mean, _MEAN, "Mean", hover=hover_texts),
         _paper_means(analysis, measure),
     )
 
