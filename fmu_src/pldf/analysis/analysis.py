@@ -228,7 +228,8 @@ def _drives(study: StudyFolder, reading: Reading) -> tuple[list[DriveRow], Path]
     recordings = study.recordings()
     if not recordings:
         raise ModelError(
-            f"{study.folder}: no drives.csv and no recordings/PARTICIPANT_PHASE.csv to analyse"
+            f"{study.folder}: no drives.csv and no recordings/PARTICIPANT_PHASE.csv to analyse; "
+            "name a folder that 'pldf study' wrote, or put recordings there"
         )
     drives = []
     for number, ((participant, phase), path) in enumerate(recordings.items(), start=1):

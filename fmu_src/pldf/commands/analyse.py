@@ -67,8 +67,9 @@ def run(options: argparse.Namespace) -> None:
     """Analyse, write the tables, print what was found and where it is."""
     road = chosen_road(options)
     study = StudyFolder(options.folder, road.route if road else None, frozenset(options.without))
-    with progress_bar("recordings", len(study.recordings()), "") as bar:
-        analysis = analyse(study, lambda done, _: bar.update(bar.task_ids[0], completed=done))
+    with progress_bar("read", 1.0, "recordings") as bar:  # analyse tells how many there are
+        task = bar.task_ids[0]
+        analysis = analyse(study, lambda done, all_: bar.update(task, completed=done, total=all_))
     written = write_tables(analysis, options.out or options.folder / "analysis")
     console = Console()
     console.print(_means(analysis))
