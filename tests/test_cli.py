@@ -105,3 +105,16 @@ def test_wrong_usage_is_told_apart_from_bad_input(
     assert said in capsys.readouterr().err
     assert cli.main(["route", "nowhere.xodr"]) == 1
     assert "nowhere.xodr" in capsys.readouterr().err
+
+
+def test_what_the_system_refuses_is_told_with_the_file_and_a_way_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("no folder")
+    out = tmp_path / "file" / "dist"
+    assert cli.main(["build", "--only", "AdaptivePLDF", "--out", str(out)]) == 1
+    shown = capsys.readouterr()
+    assert shown.out.endswith("failed\n")
+    (line,) = shown.err.splitlines()
+    assert line.startswith(f"pldf: {out}: cannot be read or written (")
+    assert line.endswith("); check path and permissions")

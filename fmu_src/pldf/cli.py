@@ -52,13 +52,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
     except BrokenPipeError:  # the reader (head, a pager) has seen enough; that is no error
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except (ModelError, OSError) as error:
+    except ModelError as error:
         print(f"pldf: {error}", file=sys.stderr)
+        return 1
+    except OSError as error:
+        print(f"pldf: {_refused(error)}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("pldf: interrupted", file=sys.stderr)
         return 130
     return 0
+
+
+def _refused(error: OSError) -> str:
+    """Return what the operating system refused; where it names a file, what to look at."""
+    if error.filename is None:
+        return str(error)
+    return (
+        f"{error.filename}: cannot be read or written ({error.strerror}); check path and "
+        "permissions"
+    )
 
 
 if __name__ == "__main__":
