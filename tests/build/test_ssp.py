@@ -15,7 +15,8 @@ from lxml import etree
 from pldf.build import ssp
 from pldf.build.packages import sources, start_values, write_packages
 from pldf.cosim.fmu import Fmu
-from pldf.cosim.master import PARTS, connections, unpacked
+from pldf.cosim.kinds import PARTS
+from pldf.cosim.master import connections, unpacked
 from pldf.errors import ModelError
 from pldf.kernel.codes import MODE
 from pldf.study.phases import PHASES

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from lxml import etree
 from pldf.cosim.fmu import Fmu
-from pldf.cosim.master import PARTS, connections
+from pldf.cosim.kinds import PARTS
+from pldf.cosim.master import connections
 from pldf.function import DrivingFunction
 from pldf.instance import Instance
 from pldf.kernel.signals import Signal, signals_of

@@ -11,8 +11,7 @@ from typing import Final
 
 from ..build_version import build_version
 from ..cache import CACHE_VARIABLE, user_cache
-from ..cosim.kinds import NATIVE_FOLDER, USUAL_FOLDER, Kind
-from ..cosim.master import PARTS
+from ..cosim.kinds import NATIVE_FOLDER, PARTS, USUAL_FOLDER, Kind
 from ..cosim.which_fmus import Choice, choose_fmus
 from ..errors import ModelError
 

@@ -14,7 +14,8 @@ from fmpy.ssp.ssd import read_ssd  # type: ignore[import-untyped]
 
 from ..cosim.drive_limits import STEP_S
 from ..cosim.fmu import Fmu
-from ..cosim.master import PARTS, connections
+from ..cosim.kinds import PARTS
+from ..cosim.master import connections
 from ..cosim.values import Value
 from ..errors import ModelError
 from ..kernel.codes import LEARN_FAITHFUL

@@ -7,7 +7,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Final
 
-from ..cosim.kinds import NATIVE_FOLDER
+from ..cosim.kinds import NATIVE_FOLDER, PARTS
 from ..cosim.platforms import PLATFORMS
 from ..errors import ModelError
 
@@ -20,12 +20,13 @@ EXAMPLE: Final = (
     "  pldf build --native --target linux64 --only AdaptivePLDF\n"
     "      the quick way to see whether a changed kernel still compiles"
 )
-MODELS: Final = ("AdaptivePLDF", "LongitudinalVehicle", "ScriptedDriver")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``pldf build``."""
-    parser.add_argument("--only", choices=MODELS, help="build this FMU alone, no packages")
+    parser.add_argument(
+        "--only", choices=sorted(PARTS.values()), help="build this FMU alone, no packages"
+    )
     parser.add_argument(
         "--out", type=Path, default=Path("dist"), metavar="FOLDER", help="default: dist"
     )

@@ -1,4 +1,4 @@
-"""The two kinds of FMUs, and where ``pldf build`` puts them; commands need no more to begin."""
+"""The three FMUs, their two kinds, and where ``pldf build`` puts them: all that commands need."""
 
 from __future__ import annotations
 
@@ -10,3 +10,9 @@ KINDS: Final[tuple[Kind, ...]] = ("native", "python")
 # Where the native FMUs are: in the folder of the Python ones.
 NATIVE_FOLDER: Final = "native"
 USUAL_FOLDER: Final = Path("dist")
+# The vehicle comes first: the function plans its first outputs from where the vehicle is.
+PARTS: Final = {
+    "vehicle": "LongitudinalVehicle",
+    "driver": "ScriptedDriver",
+    "pldf": "AdaptivePLDF",
+}

@@ -22,15 +22,10 @@ from ..errors import ModelError
 from ..recordings.recording import COLUMNS, Recording
 from .drive_limits import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS, STEP_S
 from .fmu import BufferElement, Fmu, Slave, unpack
+from .kinds import PARTS
 from .native_files import readable_values
 from .values import FmuMessage, Values
 
-# The vehicle comes first: the function plans its first outputs from where the vehicle is.
-PARTS: Final = {
-    "vehicle": "LongitudinalVehicle",
-    "driver": "ScriptedDriver",
-    "pldf": "AdaptivePLDF",
-}
 _PROGRESS_STEPS: Final = 200
 
 ARRIVED: Final = "reached the end of the route"

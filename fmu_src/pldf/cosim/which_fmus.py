@@ -13,8 +13,7 @@ import fmpy  # type: ignore[import-untyped]
 from ..build_version import build_version, native_making
 from ..errors import ModelError
 from .fmu import describe
-from .kinds import NATIVE_FOLDER, USUAL_FOLDER, Kind
-from .master import PARTS
+from .kinds import NATIVE_FOLDER, PARTS, USUAL_FOLDER, Kind
 from .platforms import TARGETS
 
 PLATFORM: Final[str] = fmpy.platform_tuple
