@@ -1,0 +1,1 @@
+"""The fault campaign: what is promised, tried hard and counted (docs/reliability.md)."""
