@@ -117,8 +117,8 @@ def step_times() -> dict[str, float]:
     function.initialize()
     compiled = compile_modules((*KERNEL_MODULES, step_loop))
     st = pack(function.record)
-    route = RouteArrays(*function.arrays[:5])
-    profile = ProfileArrays(*(a.copy() for a in function.arrays[5:14]))
+    route = RouteArrays(*map(np.array, function.route))
+    profile = ProfileArrays(*map(np.array, function.profile))
     trace = zeros(TraceArrays, len(function.arrays[0]))
     return {
         "cpython_s": median_s(in_cpython) / STEPS,

@@ -49,6 +49,8 @@ class ProfileArrays(NamedTuple):
     offset_mps: Floats  # cell: learned offset of the set speed from the limit
     drive: Floats  # node: number of the drive that changed it last, 0 = never
     intervention: Floats  # node: number of the intervention in that drive, 0 = set speed
+    lessons: Floats  # node: how many drives shaped it
+    bound: Floats  # node: which bound cut it last (BOUND in codes)
     limit_end_m: Floats  # node: position of the next change of the legal limit, else route end
     turn_m: Floats  # node: position where the present or next acceleration phase ends
 
@@ -82,3 +84,5 @@ class NextArrays(NamedTuple):
     offset_mps: Floats
     drive: Floats
     intervention: Floats
+    lessons: Floats
+    bound: Floats

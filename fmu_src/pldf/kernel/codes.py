@@ -60,6 +60,17 @@ REASON: Final = Enumeration(
     ),
 )
 
+# Which bound of section 3.8 cut the learned speed of a node last; kept in profile files.
+BOUND_NONE: Final = 0
+BOUND_LATERAL_ACCEL: Final = 1
+BOUND_LEGAL_LIMIT: Final = 2
+BOUND_ACCEL: Final = 3
+BOUND_DECEL: Final = 4
+BOUND_JERK: Final = 5
+BOUND: Final = Enumeration(
+    "Bound", ("NONE", "LATERAL_ACCEL", "LEGAL_LIMIT", "ACCEL", "DECEL", "JERK")
+)
+
 # What became of the stored profile.
 PROFILE_BASE: Final = 0
 PROFILE_LOADED: Final = 1

@@ -52,6 +52,8 @@ def copy_profile(profile: ProfileArrays, following: NextArrays) -> None:
         following.offset_mps[i] = profile.offset_mps[i]
         following.drive[i] = profile.drive[i]
         following.intervention[i] = profile.intervention[i]
+        following.lessons[i] = profile.lessons[i]
+        following.bound[i] = profile.bound[i]
 
 
 def _plan_with_offsets(
