@@ -205,7 +205,8 @@ class DriverMemory:
     warned: int = 0
 
 
-# A dataclass takes the fields of its LAST base first; value references follow from their order.
+# A dataclass takes the fields of its LAST base first; value references follow from their order
+# within a release (``signals.by_reference``).
 @dataclass(slots=True)
 class DriverState(DriverMemory, DriverOutputs, DriverInputs, DriverParameters, WishParameters):
     """Everything of one driver but wish and script, in one flat record."""

@@ -127,7 +127,8 @@ class VehicleMemory:
     warned: int = 0
 
 
-# A dataclass takes the fields of its LAST base first; value references follow from their order.
+# A dataclass takes the fields of its LAST base first; value references follow from their order
+# within a release (``signals.by_reference``).
 @dataclass(slots=True)
 class VehicleState(VehicleMemory, VehicleOutputs, VehicleInputs, VehicleParameters):
     """Everything of one vehicle but the grade per metre, in one flat record."""

@@ -17,6 +17,7 @@ from pldf.fmi.phases import CALLS, Phase, next_phase
 from pldf.fmi.units import base_unit
 from pldf.kernel.signals import (
     Enumeration,
+    by_reference,
     choice_input,
     count_parameter,
     flag_output,
@@ -24,6 +25,10 @@ from pldf.kernel.signals import (
     real_output,
     real_parameter,
     signals_of,
+    since,
+    text_parameter,
+    time_reference,
+    variables_of,
 )
 
 COLOUR = Enumeration("Colour", ("RED", "GREEN"))
@@ -109,6 +114,35 @@ def test_access_refuses_references_of_other_types_and_unknown_ones(reference):
     access = Access(SIGNALS, frozenset({"Real"}))
     with pytest.raises(ModelError, match=f"no Real variable with value reference {reference}"):
         access.group([0, reference])
+
+
+def test_a_later_release_moves_no_value_reference():
+    """Behind the first release's variables is the place of FMI 3.0's ``time``."""
+
+    @dataclass
+    class Later(Record):
+        """As two releases later; one field stands in the middle of the others."""
+
+        newest: int = since("0.10", flag_output("Newest"))
+        size: int = count_parameter("Size", start=3, low=1, high=9)
+        new: float = since("0.9", real_parameter("New", "m", start=1.0, low=0.0, high=2.0))
+
+    @dataclass
+    class Texts:
+        """A String parameter of the first release."""
+
+        file: str = text_parameter("File")
+
+    first = by_reference((*signals_of(Record), *signals_of(Texts)))
+    assert time_reference(first.values()) == len(first) == 7
+    later = by_reference((*signals_of(Later), *signals_of(Texts)))
+    assert {reference: later[reference].name for reference in first} == {
+        reference: signal.name for reference, signal in first.items()
+    }
+    assert later.keys() == {*range(7), 8, 9}
+    assert [later[8].name, later[9].name] == ["new", "newest"]
+    assert by_reference(later.values()) == later
+    assert tuple(later.values()) == variables_of(Later, Texts)
 
 
 def test_access_knows_what_may_be_set():

@@ -1,6 +1,6 @@
 """The model description of an FMI 3.0 FMU: the variables of FMI 2.0, with the same references.
 
-What FMI 3.0 adds is the variable ``time``, behind all others. Every variable is a scalar.
+What FMI 3.0 adds is the variable ``time``. Every variable is a scalar.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ..fmi.description import (
     header,
     type_attributes,
 )
-from ..kernel.signals import Signal
+from ..kernel.signals import Signal, by_reference, time_reference
 
 _CAPABILITIES: Final = {
     "needsExecutionTool": "false",
@@ -55,8 +55,8 @@ def model_description3(model: Model, log_categories: Mapping[str, str]) -> Eleme
     _types(root, model.signals)
     add_defaults(root, model, log_categories)
     variables = SubElement(root, "ModelVariables")
-    variables.extend(_variable(signal, i) for i, signal in enumerate(model.signals))
-    variables.append(_time(len(model.signals)))
+    variables.extend(_variable(signal, i) for i, signal in by_reference(model.signals).items())
+    variables.append(_time(time_reference(model.signals)))
     structure = SubElement(root, "ModelStructure")
     structure.extend(_unknowns(model.signals))
     return root
@@ -94,9 +94,10 @@ def _time(reference: int) -> Element:
 
 def _unknowns(signals: tuple[Signal, ...]) -> Iterable[Element]:
     """Yield all outputs, twice; one that is held depends on nothing, or on the parameters."""
-    parameters = [str(i) for i, s in enumerate(signals) if s.causality == "parameter"]
+    known = by_reference(signals)
+    parameters = [str(i) for i, s in known.items() if s.causality == "parameter"]
     for name, dependencies in (("Output", ""), ("InitialUnknown", " ".join(parameters))):
-        for reference, signal in enumerate(signals):
+        for reference, signal in known.items():
             if signal.causality == "output":
                 held = {"dependencies": dependencies} if signal.held else {}
                 yield Element(name, {"valueReference": str(reference), **held})

@@ -1,6 +1,6 @@
 """Value references turned into reads and writes of a model's record.
 
-A value reference is the index of the signal in the model's table, so it is unique over all types.
+Value references are unique over all types (``kernel.signals.by_reference``).
 An importer asks for the same group of variables again and again: each group is looked up once.
 """
 
@@ -11,7 +11,7 @@ from operator import attrgetter
 from typing import Any, NamedTuple
 
 from ..errors import ModelError
-from ..kernel.signals import Kind, Signal
+from ..kernel.signals import Kind, Signal, by_reference
 
 _GROUPS_MAX = 256  # an importer that never repeats a group must not fill the memory
 
@@ -29,7 +29,7 @@ class Access:
     """Groups of the variables that travel as one FMI type."""
 
     def __init__(self, signals: Sequence[Signal], kinds: frozenset[Kind]) -> None:
-        self._known = {i: s for i, s in enumerate(signals) if s.kind in kinds}
+        self._known = {i: s for i, s in by_reference(signals).items() if s.kind in kinds}
         self._type = "/".join(sorted(kinds))
         self._groups: dict[tuple[int, ...], Group] = {}
         self._writable: dict[tuple[int, ...], Group] = {}

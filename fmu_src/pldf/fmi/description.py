@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
 from .. import __version__
-from ..kernel.signals import Enumeration, Signal
+from ..kernel.signals import Enumeration, Signal, by_reference
 from .units import DISPLAY, base_unit
 
 STEP_SIZE_S: Final = 0.01
@@ -68,7 +68,7 @@ def model_description(model: Model, log_categories: Mapping[str, str]) -> Elemen
     _types(root, model.signals)
     add_defaults(root, model, log_categories)
     variables = SubElement(root, "ModelVariables")
-    for reference, signal in enumerate(model.signals):
+    for reference, signal in by_reference(model.signals).items():
         variables.append(_variable(signal, reference))
     _structure(root, model.signals)
     return root

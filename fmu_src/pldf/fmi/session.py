@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from ..errors import ModelError
 from ..instance import Instance
-from ..kernel.signals import Signal, signals_of
+from ..kernel.signals import Signal, variables_of
 from .access import Group
 from .phases import Phase, next_phase
 
@@ -38,7 +38,7 @@ class Session:
     def __init__(self, create: Callable[[], Instance[Any]]) -> None:
         self.create = create
         self.model = create()
-        self.signals = signals_of(self.model.record) + signals_of(self.model.texts)
+        self.signals = variables_of(self.model.record, self.model.texts)
         self.phase = Phase.INSTANTIATED
         self._time = -inf
         self._prepared = False  # this model was initialized, with these parameters

@@ -14,10 +14,14 @@ single source of the Python field, the FMI variable, the recording column and th
 The public name of a field that starts with one of ``GROUPS`` has a dot behind the group:
 ``vehicle_speed_mps`` is ``vehicle.speed_mps``. Every other field keeps its name; a field that only
 looks grouped (``driver_id``) states its ``name``.
+
+A field that 0.2 did not have names the release that brings it, ``since("0.3", real_input(...))``:
+all variables of older releases keep their value references, wherever in the record it stands.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import Field, dataclass, field, fields
 from math import inf
 from typing import Any, Final, Literal, cast
@@ -56,6 +60,7 @@ class Signal:
 
     ``held``: an output that initialization and steps set, and that does not follow the inputs in
     between. Masters that sort by such dependencies find no algebraic loop in the coupled models.
+    ``since``: the release that brought it; empty: 0.2 had it.
     """
 
     field: str
@@ -69,6 +74,12 @@ class Signal:
     high: float | None = None
     enumeration: Enumeration | None = None
     held: bool = False
+    since: str = ""
+
+    @property
+    def release(self) -> tuple[int, ...]:
+        """The numbers of ``since``; of 0.2 and before none."""
+        return tuple(map(int, self.since.split("."))) if self.since else ()
 
     @property
     def range(self) -> tuple[float, float]:
@@ -89,6 +100,31 @@ class Signal:
 def signals_of(record: type[Any] | Any) -> tuple[Signal, ...]:
     """Return the signals of a record class (or instance) in order of definition."""
     return tuple(_signal(f) for f in fields(record) if _KEY in f.metadata)
+
+
+def by_reference(signals: Iterable[Signal]) -> dict[int, Signal]:
+    """Return the variables of a model by value reference, which no later release changes.
+
+    The older release first, within one the order given; behind 0.2's stands FMI 3.0's ``time``.
+    """
+    ordered = sorted(signals, key=lambda signal: signal.release)
+    time = time_reference(ordered)
+    return {i + (i >= time): signal for i, signal in enumerate(ordered)}
+
+
+def time_reference(signals: Iterable[Signal]) -> int:
+    """Return the value reference of FMI 3.0's independent variable ``time``."""
+    return sum(not signal.since for signal in signals)
+
+
+def variables_of(record: type[Any] | Any, texts: type[Any] | Any) -> tuple[Signal, ...]:
+    """Return the variables of a model in the order of their value references.
+
+    Args:
+        record: class (or instance) of the numbers.
+        texts: class (or instance) of the String parameters.
+    """
+    return tuple(by_reference((*signals_of(record), *signals_of(texts))).values())
 
 
 def _signal(spec: Field[Any]) -> Signal:
@@ -182,3 +218,9 @@ def choice_output(description: str, choices: Enumeration, *, held: bool = False)
 def text_parameter(description: str, *, name: str = "") -> Any:
     """String parameter, empty by default: everything works with none of them set."""
     return _spec("parameter", "String", "", description, name=name)
+
+
+def since(release: str, specifier: Any) -> Any:
+    """Say that ``release`` brought the variable that one of the functions above specifies."""
+    details = {**specifier.metadata[_KEY], "since": release}
+    return field(default=specifier.default, metadata={_KEY: details})

@@ -134,7 +134,8 @@ class Memory:
     combined_ns: int = 0
 
 
-# A dataclass takes the fields of its LAST base first; value references follow from their order.
+# A dataclass takes the fields of its LAST base first; value references follow from their order
+# within a release (``signals.by_reference``).
 @dataclass(slots=True)
 class PldfState(
     Memory,

@@ -14,7 +14,7 @@ from ...fmi.phases import Phase
 from ...fmi.session import STEP_MAX_S
 from ...kernel.arrays import NextArrays, ProfileArrays
 from ...kernel.codes import LOCALIZATION, PROFILE_STATUS
-from ...kernel.signals import Signal, signals_of
+from ...kernel.signals import Signal, by_reference, time_reference, variables_of
 from ...profiles.profile_file import ALIGNMENT, CHECKSUM_SIZE, COLUMNS, NODES_MAX, Column
 from .model import NativeModel
 
@@ -64,9 +64,7 @@ def source(model: NativeModel, guid: str, token: str) -> str:
     cells = [f.name for f in fields(model.record)]
     lines = ['#include "model.h"', "", "#include <math.h>", "#include <stddef.h>", ""]
     lines += [f"Entry model_{entry};" for entry in model.entries]
-    lines += _array(
-        "static const Variable variables", (_variable(s, model) for s in signals(model))
-    )
+    lines += _array("static const Variable variables", _variables(model))
     lines += ["", "static const Cell defaults[] = {"]
     lines += [f"    {_cell(f.default)}, /* {f.name} */" for f in fields(model.record)]
     lines += ["};"]
@@ -104,7 +102,16 @@ def _column(column: Column) -> Iterator[str]:
 
 def signals(model: NativeModel) -> tuple[Signal, ...]:
     """Return the variables in the order of their value references."""
-    return signals_of(model.record) + signals_of(model.texts)
+    return variables_of(model.record, model.texts)
+
+
+def _variables(model: NativeModel) -> list[Iterable[str]]:
+    """Return one row per value reference; ``time``, which only FMI 3.0 asks for, is among them."""
+    known = signals(model)
+    rows: list[Iterable[str]] = [_variable(signal, model) for signal in known]
+    time = ('"time"', "KIND_TIME", "INDEPENDENT", "0", _number(-inf), _number(inf))
+    rows.insert(time_reference(known), time)
+    return rows
 
 
 def _variable(signal: Signal, model: NativeModel) -> Iterator[str]:
@@ -119,14 +126,14 @@ def _variable(signal: Signal, model: NativeModel) -> Iterator[str]:
 
 
 def _references(names: tuple[str, ...], model: NativeModel) -> Iterator[str]:
-    known = [signal.field for signal in signals(model)]
-    return (str(known.index(name)) for name in names)
+    known = {signal.field: reference for reference, signal in by_reference(signals(model)).items()}
+    return (str(known[name]) for name in names)
 
 
 def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
     texts = [f.name for f in fields(model.texts)]
     yield "variables", "variables"
-    yield "variable_count", str(len(signals(model)))
+    yield "variable_count", str(len(_variables(model)))
     yield "defaults", "defaults"
     for entry in ("start", "refresh", "step"):
         yield entry, f"model_{entry}" if entry in model.entries else "NULL"

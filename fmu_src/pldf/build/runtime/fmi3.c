@@ -81,7 +81,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Bo
 /* Values */
 
 static bool is_time(fmi3ValueReference reference) {
-    return reference == (fmi3ValueReference)model.variable_count;
+    return model.variables[reference].kind == KIND_TIME;
 }
 
 GET(Float64, KIND_REAL | KIND_TIME, is_time(references[i]) ? session_time(s) : CELL(i).real)

@@ -16,8 +16,8 @@ typedef union {
 typedef void Entry(Cell *, double *, int64_t, int64_t, double);
 
 enum { KIND_REAL = 1, KIND_INTEGER = 2, KIND_BOOLEAN = 4, KIND_STRING = 8, KIND_ENUMERATION = 16 };
-enum { KIND_TIME = 32 }; /* FMI 3.0 has it behind the last variable */
-enum { PARAMETER, INPUT, OUTPUT }; /* parameters are fixed */
+enum { KIND_TIME = 32 }; /* what FMI 3.0 alone has; in no cell */
+enum { PARAMETER, INPUT, OUTPUT, INDEPENDENT }; /* parameters are fixed */
 
 typedef struct { /* its index is the value reference */
     const char *name;

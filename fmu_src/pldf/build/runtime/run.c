@@ -35,7 +35,8 @@ static void clear_memory(Cell *record) {
     memcpy(given, record, sizeof given);
     memcpy(record, model.defaults, sizeof given);
     for (const Variable *v = model.variables; v < model.variables + model.variable_count; v++)
-        if (v->causality != OUTPUT && v->kind != KIND_STRING) record[v->cell] = given[v->cell];
+        if (v->kind != KIND_STRING && (v->causality == PARAMETER || v->causality == INPUT))
+            record[v->cell] = given[v->cell];
 }
 
 /* Routes and scripts */

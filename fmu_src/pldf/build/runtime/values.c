@@ -4,12 +4,9 @@
 
 #include "session.h"
 
-static const Variable TIME = {.name = "time", .kind = KIND_TIME, .causality = INPUT};
-
 static const Variable *find(Session *s, uint32_t reference, int kinds) {
     uint32_t count = (uint32_t)model.variable_count;
     if (reference < count && model.variables[reference].kind & kinds) return &model.variables[reference];
-    if (reference == count && kinds & KIND_TIME) return &TIME;
     importer_tell(&s->importer, ERROR_LEVEL, "there is no variable of this type with value reference %u",
                   (unsigned)reference);
     return NULL;
