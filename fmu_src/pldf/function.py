@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final, cast
 
 import numpy as np
@@ -34,6 +34,7 @@ from .profiles.store import (
     ProfileStore,
     StoredProfile,
 )
+from .profiles.stored_profile import COLUMN_NAMES
 from .roads import Route, chosen_route, fingerprint, route_arrays
 
 INPUT_TEXT: Final = {
@@ -47,6 +48,9 @@ NO_STORE: Final = (
     "no profile store: nothing is loaded or saved. Set the parameter profile_store or the "
     f"environment variable {STORE_VARIABLE} to a folder."
 )
+
+# What a drive leaves for the next one and a file keeps of it.
+LEARNED: Final = tuple(name for name in NextArrays._fields if name in COLUMN_NAMES)
 
 # Bounds of every profile, and what the base profile is planned with: it must keep to them.
 BOUNDS: Final = tuple(
@@ -108,11 +112,7 @@ class DrivingFunction(Instance[PldfState]):
         self.stored = stored
         self.record.profile_iteration = len(stored.iterations)
         if self.record.apply_learned and stored.iterations:
-            newest = stored.iterations[-1]
-            np.asarray(self.profile.learned_mps)[:] = newest.learned_mps
-            np.asarray(self.profile.offset_mps)[:] = newest.offset_mps
-            np.asarray(self.profile.drive)[:] = newest.drive
-            np.asarray(self.profile.intervention)[:] = newest.intervention
+            follow_newest(self.profile, stored)
             adopt_learned(self.record, self.route, self.profile, self.work)
 
     def attach(self, arrays: Arrays) -> None:
@@ -148,12 +148,12 @@ class DrivingFunction(Instance[PldfState]):
         if drive.learns(self.record) and self.record.nodes >= 2 and self.stored is not None:
             self._save(self.learn())
 
-    def learn(self) -> Iteration:
+    def learn(self, kind: str = "drive") -> Iteration:
         """Return what the drive so far leaves for the next one, as the next iteration."""
         if self.stored is None:
             raise ModelError("nothing to learn from before the instance was initialized")
         learn_drive(self.record, self.route, self.profile, self.trace, self.work, self.following)
-        self.learned = next_iteration(self.record, self.following, self.stored)
+        self.learned = next_iteration(self.record, self.profile, self.following, self.stored, kind)
         return self.learned
 
     def _open_store(self) -> ProfileStore | None:
@@ -181,8 +181,7 @@ class DrivingFunction(Instance[PldfState]):
             st.profile_status = PROFILE_BASE
             return new
         st.profile_status = PROFILE_LOADED if stored.iterations else PROFILE_BASE
-        # The planner's parameters may have changed since the file was written.
-        return replace(stored, base_mps=base)
+        return stored
 
     def _save(self, iteration: Iteration) -> None:
         if self._store is None or self.stored is None:
@@ -216,15 +215,30 @@ def check_bounds(st: PldfState) -> None:
             )
 
 
-def next_iteration(st: PldfState, following: NextArrays, stored: StoredProfile) -> Iteration:
-    """Return what a finished drive leaves behind as the next iteration of ``stored``."""
+def follow_newest(profile: ProfileArrays, stored: StoredProfile) -> None:
+    """Fill ``profile`` with the newest iteration of ``stored``, not yet adopted."""
+    newest = stored.iteration()
+    for name in LEARNED:
+        np.asarray(getattr(profile, name))[:] = getattr(newest, name)
+
+
+def next_iteration(
+    st: PldfState,
+    profile: ProfileArrays,
+    following: NextArrays,
+    stored: StoredProfile,
+    kind: str = "drive",
+) -> Iteration:
+    """Return what a finished drive leaves behind as the next iteration of ``stored``.
+
+    What the kernel does not know yet is carried over from the iteration that the drive followed.
+    """
     truncated = ", last intervention truncated" if st.intervening else ""
-    return Iteration(
-        number=len(stored.iterations) + 1,
-        note=f"drive{truncated}",
-        interventions=st.drive_interventions,
-        learned_mps=np.array(following.learned_mps),
-        offset_mps=np.array(following.offset_mps),
-        drive=np.array(following.drive),
-        intervention=np.array(following.intervention),
+    columns = {name: np.array(getattr(following, name)) for name in LEARNED}
+    return stored.next_iteration(
+        kind,
+        f"drive{truncated}",
+        st.drive_interventions,
+        {"base_mps": np.array(profile.base_mps), **columns},
+        after=None if st.apply_learned else 0,
     )

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmi_host import Host
-from hostile_files import damaged, is_prepared, with_notes
+from hostile_files import damaged, is_prepared, with_notes, with_other_blocks
 from native_drives import CASES, by_source
 from pldf.errors import ModelError
 from pldf.kernel.codes import PROFILE_BASE, PROFILE_LOADED, PROFILE_REFUSED
 from pldf.profiles.profile_file import decode, encode
+from pldf.profiles.profile_format_1 import encode_1
 from pldf.profiles.store import ProfileStore
 from pldf.profiles.stored_profile import StoredProfile
 
@@ -31,12 +32,14 @@ def profile(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, bytes]:
 
 
 def others(name: str, good: bytes) -> Iterator[bytes]:
-    """Yield sound profiles of somebody else, of another road, and in another version."""
+    """Yield sound profiles of somebody else, of another road, and in another format."""
     profile = decode(good, name)
     yield encode(StoredProfile(profile.driver_id + 1, profile.route, profile.base_mps))
     yield encode(StoredProfile(profile.driver_id, "0" * 16, profile.base_mps))
     yield encode(StoredProfile(profile.driver_id, profile.route, profile.base_mps[:-1]))
     yield encode(StoredProfile(profile.driver_id, profile.route, profile.base_mps))
+    yield encode_1(StoredProfile(profile.driver_id, profile.route, profile.base_mps))
+    yield encode_1(profile)
     yield good
 
 
@@ -75,7 +78,9 @@ def test_profiles(native_folder: Path, profile: tuple[str, bytes], tmp_path: Pat
     host, (name, good) = Host(native_folder / "AdaptivePLDF.fmu"), profile
     wanted = decode(good, name)
     verdicts = []
-    for data in (*damaged(good), *with_notes(good), *others(name, good)):
+    old = encode_1(wanted)
+    new = (*damaged(good), *with_notes(good), *with_other_blocks(good), *others(name, good))
+    for data in (*new, *damaged(old), *with_notes(old)):
         ours, theirs = (in_store(tmp_path / who, name, data) for who in ("python", "c"))
         verdicts.append(by_python(ours, wanted))
         assert by_c(host, theirs) == verdicts[-1], data[:400]

@@ -11,10 +11,12 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
-from hostile_files import damaged
+from hostile_files import damaged, with_other_blocks
 from native_drives import CASES, by_source
 from native_hosts import HEADERS, MODELS, PLATFORMS, WARNINGS, Hosts, Value, host_sources, missing
 from pldf.build import fmus as fmu_build
+from pldf.profiles.profile_file import decode
+from pldf.profiles.profile_format_1 import encode_1
 
 pytest.importorskip("ziglang", reason="needs the extra: pip install -e .[native]")
 if sys.platform != "linux":
@@ -116,7 +118,9 @@ def test_damaged_profiles(sanitized: Sanitized, tmp_path: Path) -> None:
     store = tmp_path / "good"
     by_source(case, case.script()[:500], store)
     (profile,) = store.iterdir()
-    for number, data in enumerate(damaged(profile.read_bytes())):
+    good = profile.read_bytes()
+    old = encode_1(decode(good, profile.name))
+    for number, data in enumerate((*damaged(good), *with_other_blocks(good), *damaged(old))):
         place = tmp_path / str(number)
         place.mkdir()
         (place / profile.name).write_bytes(data)

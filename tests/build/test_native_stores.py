@@ -9,7 +9,10 @@ import pytest
 from fmi_host import Host, Slave
 from native_drives import CASES, by_source
 from native_hosts import PLATFORMS, Hosts
-from pldf.profiles.profile_file import decode
+from pldf.function import LEARNED
+from pldf.profiles.profile_file import decode, encode
+from pldf.profiles.profile_format_1 import encode_1
+from pldf.profiles.stored_profile import COLUMN_NAMES
 
 CASE = CASES["learn"]
 SCRIPT = CASE.script()[:1500]
@@ -78,6 +81,52 @@ def test_what_was_learned_beside_another_drive_is_kept_beside_its_profile(
     assert drives.drive(instances=3) == [results] * 3
     kept = {f".conflict-{n}.pldf": profile for n in (1, 2)}
     assert drives.profiles() == {".pldf": profile, **kept}
+
+
+def test_a_profile_of_release_0_2_0_is_upgraded(
+    drives: Drives, learned: tuple[bytes, bytes], tmp_path: Path
+) -> None:
+    """By the next write, as Python does it."""
+    old = encode_1(decode(learned[1], NAME))
+    expected = continued(tmp_path / "python", old)
+    assert expected.startswith(b"PLDF-PROFILE 2\n")
+    drives.store.mkdir(parents=True)
+    (drives.store / f"{NAME}.pldf").write_bytes(old)
+    drives.drive()
+    assert drives.profiles() == {".pldf": expected}
+
+
+def test_what_the_kernel_does_not_know_survives_a_drive(
+    drives: Drives, learned: tuple[bytes, bytes], tmp_path: Path
+) -> None:
+    """Evidence and pending demonstrations, to the bit."""
+    profile = decode(learned[1], NAME)
+    random = np.random.default_rng(7)
+    known = {*LEARNED, "base_mps"}
+    columns = {
+        name: random.integers(0, 3, profile.nodes).astype(float)
+        for name in COLUMN_NAMES
+        if name not in known
+    }
+    assert len(columns) == 12
+    filled = profile.with_iteration(profile.next_iteration("learn", "filled", 0, columns))
+    expected = continued(tmp_path / "python", encode(filled))
+    newest = decode(expected, NAME).iteration()
+    assert newest.number == 3
+    assert all(np.array_equal(getattr(newest, name), columns[name]) for name in columns)
+    drives.store.mkdir(parents=True)
+    (drives.store / f"{NAME}.pldf").write_bytes(encode(filled))
+    drives.drive()
+    assert drives.profiles() == {".pldf": expected}
+
+
+def continued(store: Path, profile: bytes) -> bytes:
+    """Return what the source makes of a profile in one more drive."""
+    store.mkdir()
+    (store / f"{NAME}.pldf").write_bytes(profile)
+    by_source(CASE, SCRIPT, store)
+    (path,) = store.iterdir()
+    return path.read_bytes()
 
 
 @pytest.mark.parametrize("damage", ["truncated", "flipped", "empty"])

@@ -12,7 +12,9 @@ import matplotlib.image
 import numpy as np
 import pytest
 from pldf import cli
+from pldf.kernel.codes import BOUND_ACCEL, BOUND_JERK, BOUND_LEGAL_LIMIT
 from pldf.profiles.profile_file import encode
+from pldf.profiles.profile_format_1 import encode_1
 from pldf.profiles.store import ProfileStore, StoredProfile, read_profile, write_profile
 from profile_examples import DRIVER, ROUTE, drive_result, new_profile
 
@@ -48,12 +50,18 @@ def example() -> StoredProfile:
     first = drive_result(profile, "B1")
     learned = profile.base_mps.copy()
     learned[100:200] += 10.0
-    first = replace(first, learned_mps=learned, offset_mps=np.zeros(1001), interventions=3)
+    zeros = np.zeros(1001)
+    first = replace(first, learned_mps=learned, offset_mps=zeros, interventions=3)
+    first = replace(first, lessons=zeros, bound=zeros)
     learned = learned.copy()
     learned[500:510] -= 2.0
     offset = np.zeros(1001)
     offset[700:] = 5.0 / 3.6
+    lessons, bound = np.zeros(1001), np.zeros(1001)
+    lessons[100:200], lessons[500:510], lessons[150] = 1.0, 1.0, 2.0
+    bound[120:171], bound[501:505], bound[505:510] = BOUND_LEGAL_LIMIT, BOUND_ACCEL, BOUND_JERK
     second = replace(first, number=2, note="B2", learned_mps=learned, offset_mps=offset)
+    second = replace(second, lessons=lessons, bound=bound)
     return replace(profile, iterations=(first, replace(second, interventions=1)))
 
 
@@ -99,14 +107,14 @@ def test_show_newest_and_older_state(run: Run) -> None:
     assert [columns(line) for line in out.splitlines()] == [
         ["driver", "17"],
         ["route", f"{ROUTE},", "1000", "m"],
-        ["iteration", "2", "of", "2:", "B2"],
+        ["iteration", "2", "of", "2:", "drive,", "B2"],
         ["learned", "minus", "base", "speed:"],
-        ["from", "m", "to", "m", "mean", "km/h", "peak", "km/h"],
-        ["100", "199", "+36.0", "+36.0"],
-        ["500", "509", "-7.2", "-7.2"],
+        ["from", "m", "to", "m", "mean", "km/h", "peak", "km/h", "lessons", "cut", "by"],
+        ["100", "199", "+36.0", "+36.0", "2", "legal_limit"],
+        ["500", "509", "-7.2", "-7.2", "1", "accel,", "jerk"],
         ["learned", "offset", "of", "the", "set", "speed:"],
-        ["from", "m", "to", "m", "mean", "km/h", "peak", "km/h"],
-        ["700", "1000", "+5.0", "+5.0"],
+        ["from", "m", "to", "m", "mean", "km/h", "peak", "km/h", "lessons", "cut", "by"],
+        ["700", "1000", "+5.0", "+5.0", "0", "-"],
     ]
     _, out, _ = run("show", f"store/{NAME}", "--iteration", "0")
     assert out.splitlines()[2:] == [
@@ -130,9 +138,11 @@ def test_show_plot(run: Run) -> None:
 def test_history(run: Run) -> None:
     status, out, err = run("history", f"store/{NAME}")
     assert (status, err) == (0, "")
-    first, second = (columns(line) for line in out.splitlines()[2:])
-    assert first == ["1", "3", "100", f"{36 * 100 / 1001:.2f}", "36.00", "B1"]
-    assert second == ["2", "1", "10", f"{7.2 * 10 / 1001:.2f}", "7.20", "B2"]
+    first, second = (columns(line) for line in out.splitlines()[3:])
+    change = f"{36 * 100 / 1001:.2f}"
+    assert first == ["1", "drive", "3", "100", change, "36.00", "0", "0", "B1"]
+    change = f"{7.2 * 10 / 1001:.2f}"
+    assert second == ["2", "drive", "1", "10", change, "7.20", "110", "60", "B2"]
 
 
 def test_export_is_exact_csv(run: Run, tmp_path: Path) -> None:
@@ -153,6 +163,20 @@ def test_export_is_exact_csv(run: Run, tmp_path: Path) -> None:
     _, older, _ = run("export", f"store/{NAME}", "--iteration", "1")
     assert older.splitlines()[502] == "501.0,20.0,20.0,0.0"
     assert lines[502] == "501.0,20.0,18.0,0.0"
+
+
+def test_export_for_a_release_that_knows_format_1(run: Run, tmp_path: Path) -> None:
+    status, out, err = run("export", f"store/{NAME}", "--format", "1", "--out", "old.pldf")
+    assert (status, err) == (0, "")
+    assert out == (
+        f"old.pldf: store/{NAME} in format 1; kinds, lessons, bounds and evidence are left out: "
+        "it does not know them\n"
+    )
+    assert (tmp_path / "old.pldf").read_bytes() == encode_1(example())
+    status, out, err = run("export", f"store/{NAME}", "--format", "1", "--out", "old.pldf")
+    assert (status, out) == (1, "")
+    assert err == "pldf: old.pldf: it is there already; choose another file\n"
+    assert run("history", "old.pldf")[0] == 0
 
 
 def test_export_into_a_pipe_that_closes_early_is_no_error(tmp_path: Path) -> None:
@@ -213,6 +237,9 @@ ERRORS = [
     (1, "elsewhere: no such folder", ("list", "--store", "elsewhere")),
     (2, "required: --to", ("rollback", "17")),
     (2, "invalid int value", ("export", "17", "--iteration", "two")),
+    (2, "--format 1 needs --out FILE", ("export", "17", "--format", "1")),
+    (2, "invalid choice: 2", ("export", "17", "--format", "2", "--out", "x.pldf")),
+    (2, "--iteration", ("export", "17", "--format", "1", "--out", "x", "--iteration", "1")),
     (2, "required: FILE", ("show",)),
     (2, "required: ACTION", ()),
     (2, "invalid choice", ("delete",)),

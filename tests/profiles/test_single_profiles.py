@@ -14,6 +14,7 @@ from pldf.profiles.store import (
     rollback_profile,
     write_profile,
 )
+from pldf.profiles.stored_profile import COLUMN_NAMES
 from profile_examples import DRIVER, ROUTE, learned_profile, new_profile
 from stored import NAME, content, load, saved_store
 
@@ -53,7 +54,8 @@ def test_rollback_adds_a_copy_and_keeps_the_history(tmp_path: Path, to: int) -> 
     assert encode(replace(profile, iterations=profile.iterations[:3])) == encode(before)
     newest, old = profile.iterations[3], before.iteration(to)
     assert (newest.number, newest.note, newest.interventions) == (4, f"rollback of {to}", 0)
-    for name in ("learned_mps", "offset_mps", "drive", "intervention"):
+    assert newest.kind == "rollback"
+    for name in COLUMN_NAMES:
         assert np.array_equal(getattr(newest, name), getattr(old, name))
 
 

@@ -81,11 +81,15 @@ def test_files_of_drivers_and_routes(tmp_path: Path) -> None:
 def test_base_may_be_planned_anew(tmp_path: Path) -> None:
     profiles = saved_store(tmp_path)
     profile = load(profiles)
-    faster = replace(profile, base_mps=profile.base_mps + 0.5)
-    profiles.append(faster, drive_result(faster))
+    faster = profile.base_mps + 0.5
+    profiles.append(profile, replace(drive_result(profile), base_mps=faster))
     again = load(profiles)
     assert len(again.iterations) == 3
-    assert np.array_equal(again.base_mps, faster.base_mps)
+    assert np.array_equal(again.iteration().base_mps, faster)
+    assert np.array_equal(again.iteration(2).base_mps, profile.base_mps)
+    # Going back to it is going back to what is planned now.
+    back = profiles.rollback(DRIVER, ROUTE, 0).iteration()
+    assert np.array_equal(back.learned_mps, faster)
 
 
 # Files that cannot be used
@@ -96,9 +100,9 @@ def bad_files() -> dict[str, tuple[bytes, str]]:
     return {
         "empty": (b"", "line 1: truncated"),
         "foreign": (b"<OpenDRIVE/>\n", "line 1: not a profile file"),
-        "newer": (good.replace(b"FILE 1", b"FILE 2", 1), "line 1: format 2 of a newer version"),
+        "newer": (good.replace(b"FILE 2", b"FILE 3", 1), "line 1: format 3 of a newer version"),
         "truncated": (good[:-1], r"byte \d+: truncated"),
-        "corrupt": (good[:200] + b"\xff" + good[201:], r"byte \d+: damaged: checksum"),
+        "corrupt": (good[:-200] + b"\xff" + good[-199:], r"byte \d+: damaged: checksum"),
         "other route": (encode(new_profile(route="f" * 16)), "line 3: learned on another route"),
         "other driver": (encode(new_profile(driver_id=3)), "line 2: profile of driver 3, not"),
         "other length": (encode(new_profile(nodes=12)), "line 4: 12 nodes, but the route has 11"),

@@ -18,6 +18,7 @@ from pldf.profiles.store import (
     read_profile,
     write_profile,
 )
+from pldf.profiles.stored_profile import COLUMN_NAMES
 from profile_examples import DRIVER, ROUTE, drive_result, learned_profile, new_profile
 from stored import NAME, NOBODY_ELSE, content, load, needs_sigkill, saved_store, worker
 
@@ -53,13 +54,13 @@ def test_a_history_of_equal_length_but_other_content_is_a_conflict(tmp_path: Pat
         profiles.append(loaded, drive_result(loaded))
 
 
-@pytest.mark.parametrize("array", ["learned_mps", "offset_mps", "drive", "intervention"])
+@pytest.mark.parametrize("array", COLUMN_NAMES)
 def test_a_history_that_differs_in_one_number_is_a_conflict(tmp_path: Path, array: str) -> None:
     profiles = saved_store(tmp_path, 2)
     loaded = load(profiles)
     first = loaded.iterations[0]
     values = getattr(first, array).copy()
-    values[-1] += 1.0
+    values[-1] += 1.0 if values[-1] < 1.0 else -1.0
     changed = replace(
         loaded, iterations=(replace(first, **{array: values}), *loaded.iterations[1:])
     )

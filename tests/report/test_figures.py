@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 from pldf.kernel.units import KMH_PER_MPS
-from pldf.profiles.stored_profile import Iteration, StoredProfile
+from pldf.profiles.stored_profile import StoredProfile
 from pldf.recordings.interventions import Rates
 from pldf.recordings.recording import Recording
 from pldf.recordings.steps import Steps
@@ -104,11 +104,12 @@ def test_all_drives_have_one_scale() -> None:
 
 def profile(changes: tuple[float, ...]) -> StoredProfile:
     nodes = 2000
-    base, zeros = np.full(nodes, 20.0), np.zeros(nodes)
+    base = np.full(nodes, 20.0)
     stored = StoredProfile(1, "0" * 16, base)
     for number, change in enumerate(changes, start=1):
         learned = base + change
-        stored = stored.with_iteration(Iteration(number, f"B{number}", 0, learned, *[zeros] * 3))
+        new = stored.next_iteration("drive", f"B{number}", 0, {"learned_mps": learned})
+        stored = stored.with_iteration(new)
     return stored
 
 

@@ -18,6 +18,17 @@ _NOTES: Final = (
     b"", b" ", b" a", b" a ", b"  a", b" " + b"n" * 79, b" " + b"n" * 80, b" " + b"n" * 81,
     b" " + b"n" * 200, b" a b", b" \x7f", b" \t", b" \xc3\xa9", b" a\0b",
 )  # fmt: skip
+_KINDS: Final = (
+    b" drive ", b" learn ", b" forget ", b" undo ", b" rollback ", b" base ", b" drives ", b" ",
+    b" Drive ", b" driv ", b" drive  ", b"  drive ", b" " + b"d" * 17 + b" ",
+)  # fmt: skip
+_BLOCKS: Final = (
+    b"block learned_mps m/s", b"block bound 1", b"block offset_pending_slower_mps m/s",
+    b"block evidence_faster 1", b"block base_mps m/s", b"block base_mps", b"block unheard_of 1",
+    b"block learned_mps 1", b"block learned_mps m/s ", b"block  learned_mps m/s", b"block ", b"",
+    b"block learned m/s", b"block Learned_mps m/s", b"block learned_mpss m/s",
+    b"block " + b"n" * 99 + b" 1",
+)  # fmt: skip
 _VALUES: Final = (
     np.nan, np.inf, -np.inf, -0.0, -1e-9, 0.5, 200.0, np.nextafter(200.0, 201.0), -200.0, -200.5,
     999999999.0, 1e9, 5e-324,
@@ -57,11 +68,43 @@ def damaged(good: bytes, seed: int = 3) -> Iterator[bytes]:
 def with_notes(good: bytes) -> Iterator[bytes]:
     """Yield variants of a profile with other notes behind its last iteration."""
     body = good[:-CHECKSUM_SIZE]
-    line = re.findall(rb"\niteration \d+ \d+[^\n]*", body)[-1]
-    short = re.match(rb"\niteration \d+ \d+", line)
+    line = re.findall(rb"\niteration [^\n]*", body)[-1]
+    short = re.match(rb"\niteration \d+ (?:[a-z]+ )?\d+", line)
     assert short is not None
     for note in _NOTES:
         yield checked(_filled(body.replace(line, short.group() + note, 1)))
+
+
+def with_other_blocks(good: bytes) -> Iterator[bytes]:
+    """Yield variants of a profile with other kinds, and blocks that should not stand there."""
+    body = good[:-CHECKSUM_SIZE]
+    head = body.index(b"\nend")
+    start = body.index(b"\n", head + 1) + 1
+    lines = body[:head].split(b"\n")
+    stride = (len(body) - start) // max(sum(line.startswith(b"block ") for line in lines), 1)
+    for kind in _KINDS:
+        line = re.findall(rb"\niteration [^\n]*", body)[-1]
+        yield checked(_filled(body.replace(line, re.sub(rb" [a-z]+ ", kind, line, count=1), 1)))
+    blocks = [body[at : at + stride] for at in range(start, len(body), stride)]
+    places = [number for number, line in enumerate(lines) if line.startswith(b"block ")]
+    for number, place in enumerate(places):
+        for name in _BLOCKS:
+            yield _with_blocks([*lines[:place], name, *lines[place + 1 :]], blocks)
+        for other in blocks[:number]:  # as before, or in the wrong range
+            yield _with_blocks(lines, [*blocks[:number], other, *blocks[number + 1 :]])
+        yield _with_blocks(lines, [*blocks[:number], bytes(stride), *blocks[number + 1 :]])
+        for name in _BLOCKS[:4]:  # one more, one less
+            more = [*blocks[: number + 1], blocks[number], *blocks[number + 1 :]]
+            yield _with_blocks([*lines[: place + 1], name, *lines[place + 1 :]], more)
+        less = [*blocks[:number], *blocks[number + 1 :]]
+        yield _with_blocks([*lines[:place], *lines[place + 1 :]], less)
+
+
+def _with_blocks(lines: list[bytes], blocks: list[bytes]) -> bytes:
+    head = b"\n".join(lines) + b"\nend"
+    stated = b"blocks %d" % len(blocks)
+    body = _filled(re.sub(rb"\nblocks \d+", b"\n" + stated, head) + b"\n")
+    return checked(body + b"".join(blocks))
 
 
 def checked(body: bytes) -> bytes:

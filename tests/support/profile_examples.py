@@ -20,14 +20,22 @@ def drive_result(profile: StoredProfile, note: str = "learned", seed: int = 0) -
     """Return what one more drive has learned: arbitrary, but the same for the same seed."""
     random = np.random.default_rng(seed)
     number = len(profile.iterations) + 1
-    return Iteration(
-        number,
+    n = profile.nodes
+    return profile.next_iteration(
+        "drive",
         note,
         number % 4,
-        profile.base_mps + random.uniform(-3.0, 3.0, profile.nodes),
-        random.choice((-5.0 / 3.6, 0.0, 0.1), profile.nodes),
-        random.integers(0, number + 1, profile.nodes).astype(float),
-        random.integers(0, 9, profile.nodes).astype(float),
+        {
+            "learned_mps": profile.base_mps + random.uniform(-3.0, 3.0, n),
+            "offset_mps": random.choice((-5.0 / 3.6, 0.0, 0.1), n),
+            "drive": random.integers(0, number + 1, n).astype(float),
+            "intervention": random.integers(0, 9, n).astype(float),
+            "lessons": random.integers(0, number + 1, n).astype(float),
+            "bound": random.integers(0, 6, n).astype(float),
+            "evidence_faster": random.choice((0.0, 1.25, 2.2), n),
+            "pending_faster": random.integers(0, 3, n).astype(float),
+            "pending_faster_mps": random.uniform(0.0, 50.0, n),
+        },
     )
 
 

@@ -15,12 +15,14 @@ import numpy as np
 from ..errors import ModelError
 from ..files.tables import table_csv, write_table
 from ..kernel.arrays import FloatArray
+from ..kernel.codes import BOUND
 from ..kernel.units import KMH_PER_MPS
 from ..profiles.store import (
     STORE_VARIABLE,
     ProfileRefused,
     ProfileStore,
     StoredProfile,
+    export_format_1,
     read_profile,
     rollback_profile,
 )
@@ -35,11 +37,13 @@ EXAMPLE: Final = """pldf profiles list --store profiles
 All but 'list' take a profile file or, with a store, the number of a driver."""
 
 _SHOWN_MPS: Final = 0.1 / KMH_PER_MPS  # smaller differences round to nothing in the tables
+_LEFT_OUT: Final = "kinds, lessons, bounds and evidence are left out: it does not know them"
 _EXAMPLES: Final = {
     "list": "pldf profiles list --store profiles",
     "show": "pldf profiles show 17 --store profiles --plot profile.png",
     "history": "pldf profiles history 17 --store profiles",
-    "export": "pldf profiles export driver-000017_route-0123456789abcdef.pldf --iteration 2",
+    "export": "pldf profiles export driver-000017_route-0123456789abcdef.pldf --iteration 2\n"
+    "  pldf profiles export 17 --store profiles --format 1 --out old.pldf",
     "rollback": "pldf profiles rollback 17 --store profiles --to 2",
 }
 
@@ -59,7 +63,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         command.add_argument(
             "--iteration", metavar="N", type=int, help="state after drive N, 0 = base (newest)"
         )
-    export.add_argument("--out", metavar="CSV", type=Path, help="write to this file (stdout)")
+    export.add_argument("--out", metavar="FILE", type=Path, help="write to this file (stdout)")
+    export.add_argument(
+        "--format",
+        type=int,
+        choices=(1,),
+        help="write a profile file for release 0.2.0 and older, which know format 1 (with --out)",
+    )
     rollback.add_argument(
         "--to", metavar="N", type=int, required=True, help="iteration to go back to, 0 = base"
     )
@@ -142,24 +152,37 @@ def _show(options: argparse.Namespace) -> None:
     iteration = profile.iteration(options.iteration)
     print(f"driver     {profile.driver_id}")
     print(f"route      {profile.route}, {profile.nodes - 1} m")
-    print(f"iteration  {iteration.number} of {len(profile.iterations)}: {iteration.note}")
-    _print_places("learned minus base speed", iteration.learned_mps - profile.base_mps)
-    _print_places("learned offset of the set speed", iteration.offset_mps)
+    told = f"{iteration.kind}, {iteration.note}" if iteration.note else iteration.kind
+    print(f"iteration  {iteration.number} of {len(profile.iterations)}: {told}")
+    _print_places("learned minus base speed", iteration.learned_mps - iteration.base_mps, iteration)
+    _print_places("learned offset of the set speed", iteration.offset_mps, iteration)
     if options.plot is not None:
         _plot(options.plot, profile, iteration)
         print(f"plot       {options.plot}")
 
 
-def _print_places(title: str, difference_mps: FloatArray) -> None:
+def _print_places(title: str, difference_mps: FloatArray, iteration: Iteration) -> None:
     places = _runs(np.abs(difference_mps) > _SHOWN_MPS)
     if not places:
         print(f"{title}: none")
         return
-    print(f"{title}:\n{'from m':>9} {'to m':>9} {'mean km/h':>10} {'peak km/h':>10}")
+    print(
+        f"{title}:\n{'from m':>9} {'to m':>9} {'mean km/h':>10} {'peak km/h':>10} lessons  cut by"
+    )
     for first, last in places:
         kmh = difference_mps[first : last + 1] * KMH_PER_MPS
         peak = kmh[np.argmax(np.abs(kmh))]
-        print(f"{first:9} {last:9} {kmh.mean():+10.1f} {peak:+10.1f}")
+        lessons = int(iteration.lessons[first : last + 1].max())
+        print(
+            f"{first:9} {last:9} {kmh.mean():+10.1f} {peak:+10.1f} {lessons:7}  "
+            f"{_bounds(iteration.bound[first : last + 1])}"
+        )
+
+
+def _bounds(codes: FloatArray) -> str:
+    """Return the bounds that cut a place, by name, or a dash."""
+    names = [BOUND.items[int(code)].lower() for code in np.unique(codes) if code > 0.0]
+    return ", ".join(names) or "-"
 
 
 def _runs(flags: np.ndarray[tuple[int], np.dtype[np.bool]]) -> list[tuple[int, int]]:
@@ -170,27 +193,34 @@ def _runs(flags: np.ndarray[tuple[int], np.dtype[np.bool]]) -> list[tuple[int, i
 
 def _history(options: argparse.Namespace) -> None:
     profile = read_profile(_path(options))
-    print("change of the learned speed against the iteration before, as absolute values")
     print(
-        f"{'iteration':>9} {'interventions':>13} {'changed m':>9} "
-        f"{'mean km/h':>9} {'max km/h':>9}  note"
+        "change of the learned speed against the iteration before, as absolute values;\n"
+        "then how much was shaped by a lesson and how much was cut by a bound, in all"
+    )
+    print(
+        f"{'iteration':>9} {'kind':8} {'interventions':>13} {'changed m':>9} "
+        f"{'mean km/h':>9} {'max km/h':>9} {'taught m':>8} {'cut m':>7}  note"
     )
     for iteration in profile.iterations:
         before = profile.iteration(iteration.number - 1)
         kmh = np.abs(iteration.learned_mps - before.learned_mps) * KMH_PER_MPS
         changed = int(np.count_nonzero(kmh > _SHOWN_MPS * KMH_PER_MPS))
         print(
-            f"{iteration.number:9} {iteration.interventions:13} {changed:9} "
-            f"{kmh.mean():9.2f} {kmh.max():9.2f}  {iteration.note}"
+            f"{iteration.number:9} {iteration.kind:8} {iteration.interventions:13} {changed:9} "
+            f"{kmh.mean():9.2f} {kmh.max():9.2f} {np.count_nonzero(iteration.lessons):8} "
+            f"{np.count_nonzero(iteration.bound):7}  {iteration.note}"
         )
 
 
 def _export(options: argparse.Namespace) -> None:
+    if options.format is not None:
+        _export_older(options)
+        return
     profile = read_profile(_path(options))
     iteration = profile.iteration(options.iteration)
     columns = {
         "s_m": np.arange(profile.nodes, dtype=np.float64),
-        "base_mps": profile.base_mps,
+        "base_mps": iteration.base_mps,
         "learned_mps": iteration.learned_mps,
         "offset_mps": iteration.offset_mps,
     }
@@ -198,6 +228,17 @@ def _export(options: argparse.Namespace) -> None:
         sys.stdout.write(table_csv(columns).decode())
     else:
         write_table(options.out, columns)
+
+
+def _export_older(options: argparse.Namespace) -> None:
+    if options.out is None:
+        options.wrong_usage("--format 1 needs --out FILE")
+    if options.iteration is not None:
+        options.wrong_usage("--format 1 writes all iterations, so --iteration makes no sense")
+    path = _path(options)
+    profile = read_profile(path)
+    export_format_1(options.out, profile)
+    print(f"{options.out}: {path} in format 1; {_LEFT_OUT}")
 
 
 def _rollback(options: argparse.Namespace) -> None:
@@ -212,7 +253,7 @@ def _plot(path: Path, profile: StoredProfile, iteration: Iteration) -> None:
     figure = Figure(figsize=(10, 4), layout="constrained")
     axes = figure.subplots()
     kilometres = np.arange(profile.nodes) / 1000.0
-    for label, speed_mps in (("base", profile.base_mps), ("learned", iteration.learned_mps)):
+    for label, speed_mps in (("base", iteration.base_mps), ("learned", iteration.learned_mps)):
         axes.plot(kilometres, speed_mps * KMH_PER_MPS, label=label, linewidth=1.2)
     axes.set(
         xlabel="distance in km",

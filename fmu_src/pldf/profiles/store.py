@@ -19,11 +19,9 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
-
-import numpy as np
 
 from ..errors import ModelError
 from ..files.disk import (
@@ -35,7 +33,9 @@ from ..files.disk import (
     rename_file,
     replace_file,
 )
-from .profile_file import FILE_MAX, decode, encode, require_match
+from .file_parts import FILE_MAX
+from .profile_file import decode, encode, require_match, same_history
+from .profile_format_1 import encode_1
 from .stored_profile import Iteration, ProfileRefused, StoredProfile
 
 __all__ = [
@@ -46,6 +46,7 @@ __all__ = [
     "ProfileStore",
     "Saved",
     "StoredProfile",
+    "export_format_1",
     "read_profile",
     "rollback_profile",
     "write_profile",
@@ -124,13 +125,25 @@ def rollback_profile(
     read_profile(path)  # before a folder or a lock file is made for nothing
     target = Path(os.path.realpath(path))
     with _writing(target, lock_timeout_s):
-        profile = read_profile(target)
-        old = profile.iteration(to)
-        number = len(profile.iterations) + 1
-        copy = replace(old, number=number, note=f"rollback of {to}", interventions=0)
-        profile = profile.with_iteration(copy)
+        profile = read_profile(target).rolled_back(to)
         replace_file(target, encode(profile))
     return profile
+
+
+def export_format_1(
+    path: str | os.PathLike[str], profile: StoredProfile, lock_timeout_s: float = LOCK_TIMEOUT_S
+) -> None:
+    """Put ``profile`` into the new file ``path``, as release 0.2.0 reads it.
+
+    Raises:
+        ModelError: there is something already, or the folder cannot be written to or is locked.
+    """
+    target = Path(os.path.abspath(path))
+    data = encode_1(profile)
+    with _writing(target, lock_timeout_s):
+        if os.path.lexists(target):
+            raise ModelError(f"{path}: it is there already; choose another file")
+        replace_file(target, data)
 
 
 class ProfileStore:
@@ -198,7 +211,7 @@ class ProfileStore:
         path = self.path(profile.driver_id, profile.route)
         with _writing(path, self.lock_timeout_s):
             present, warning = _make_room(path, (profile.driver_id, profile.route, profile.nodes))
-            if present is not None and not _same_history(present, profile):
+            if present is not None and not same_history(present, profile):
                 kept = free_name(path.with_suffix(".conflict-{}" + _SUFFIX))
                 replace_file(kept, data)
                 raise ProfileConflict(path, kept)
@@ -270,12 +283,3 @@ def _keep_aside(path: Path) -> Path:
     kept = free_name(path.with_name(path.name + ".refused-{}"))
     rename_file(path, kept)
     return kept
-
-
-def _same_history(a: StoredProfile, b: StoredProfile) -> bool:
-    names = ("learned_mps", "offset_mps", "drive", "intervention")
-    return len(a.iterations) == len(b.iterations) and all(
-        (x.note, x.interventions) == (y.note, y.interventions)
-        and all(np.array_equal(getattr(x, name), getattr(y, name)) for name in names)
-        for x, y in zip(a.iterations, b.iterations, strict=True)
-    )

@@ -73,7 +73,7 @@ def learn_from(
             f"the recording (s_m {columns['s_m'].min():g} to {columns['s_m'].max():g}) does not "
             f"advance on {route.name} (0 to {route.length_m:g} m)"
         )
-    iteration = function.learn()
+    iteration = function.learn("learn")
     return Learned(function, stored.with_iteration(iteration), iteration)
 
 

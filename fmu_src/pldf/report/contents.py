@@ -221,5 +221,4 @@ def _followed(recording: Recording, profile: StoredProfile, taught: str) -> Iter
     """Return the profile that a drive followed as the next iteration of ``profile``."""
     passed = np.maximum.accumulate(recording["s_m"])
     speeds = np.interp(np.arange(float(profile.nodes)), passed, recording["profile_mps"])
-    zeros = np.zeros(profile.nodes)
-    return Iteration(len(profile.iterations) + 1, taught, 0, speeds, zeros, zeros, zeros)
+    return profile.next_iteration("drive", taught, 0, {"learned_mps": speeds})

@@ -25,7 +25,7 @@ from ..compiled import KERNEL_MODULES, Namespace, compile_modules, pack, unpack
 from ..cosim.drive_limits import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS
 from ..cosim.values import Value
 from ..errors import ModelError
-from ..function import DrivingFunction, next_iteration
+from ..function import DrivingFunction, follow_newest, next_iteration
 from ..instance import Instance, zeros
 from ..kernel.arrays import FloatArray, NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from ..kernel.codes import LEARN_FAITHFUL, LEARN_OFF, OFF, STANDBY
@@ -138,9 +138,7 @@ class Simulation:
         """Return new arrays with the profile that a drive of ``phase`` follows."""
         profile = ProfileArrays(*(np.array(column) for column in self.base))
         if phase.apply_learned and stored.iterations:
-            newest = stored.iterations[-1]
-            for name in ("learned_mps", "offset_mps", "drive", "intervention"):
-                np.asarray(getattr(profile, name))[:] = getattr(newest, name)
+            follow_newest(profile, stored)
             st = pack(self.function.record)
             self.code["adopt_learned"](st[0], self.route, profile, zeros(Work, self.nodes))
         return profile
@@ -190,7 +188,7 @@ class Simulation:
         self.code["learn_drive"](st[0], self.route, arrays.profile, arrays.trace, work, following)
         record = PldfState()
         unpack(st, record)
-        return next_iteration(record, following, stored)
+        return next_iteration(record, arrays.profile, following, stored)
 
 
 class Person(NamedTuple):

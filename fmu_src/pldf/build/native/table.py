@@ -12,10 +12,13 @@ from typing import Any, Final
 
 from ...fmi.phases import Phase
 from ...fmi.session import STEP_MAX_S
+from ...function import LEARNED
 from ...kernel.arrays import NextArrays, ProfileArrays
 from ...kernel.codes import LOCALIZATION, PROFILE_STATUS
 from ...kernel.signals import Signal, by_reference, time_reference, variables_of
-from ...profiles.profile_file import ALIGNMENT, CHECKSUM_SIZE, COLUMNS, NODES_MAX, Column
+from ...profiles.file_parts import ALIGNMENT, CHECKSUM_SIZE, COLUMNS, NODES_MAX, Column
+from ...profiles.profile_format_1 import COLUMNS_1
+from ...profiles.stored_profile import KINDS
 from .model import NativeModel
 
 _KINDS: Final = {
@@ -45,7 +48,12 @@ def header(model: NativeModel) -> str:
         "MODEL_CELLS": len(fields(model.record)),
         "MODEL_TEXTS": len(fields(model.texts)),
         "ROUTE_COLUMNS": len(model.route._fields),
-        "ITERATION_COLUMNS": len(COLUMNS) - 1,
+        "PROFILE_COLUMNS": len(COLUMNS),
+        "COLUMN_BASE": _column_at("base_mps"),
+        "COLUMN_LEARNED": _column_at(LEARNED[0]),
+        "KERNEL_COLUMNS": len(LEARNED),
+        "FORMAT_1_COLUMNS": len(COLUMNS_1),
+        "PROFILE_KINDS": len(KINDS),
         "NODES_MAX": NODES_MAX,
         "ALIGNMENT": ALIGNMENT,
         "CHECKSUM_SIZE": CHECKSUM_SIZE,
@@ -71,6 +79,7 @@ def source(model: NativeModel, guid: str, token: str) -> str:
     lines += _texts("static const char *const watch_texts", model.watch.texts)
     lines += _texts("const char *const phase_names", (phase.name for phase in Phase))
     lines += _array("const ProfileColumn profile_columns", map(_column, COLUMNS))
+    lines += _texts("const char *const profile_kinds", KINDS)
     learning = "learn" in model.entries
     if learning:
         lines += _array("static const Bound bounds", (_references(p, model) for p in model.bounds))
@@ -93,8 +102,13 @@ def _struct(name: str, members: Iterable[tuple[str, str]]) -> list[str]:
     return ["", f"{name} = {{", *(f"    .{field} = {value}," for field, value in members), "};"]
 
 
+def _column_at(name: str) -> int:
+    return [column.name for column in COLUMNS].index(name)
+
+
 def _column(column: Column) -> Iterator[str]:
     yield _text(column.name)
+    yield _text(column.unit)
     yield _number(column.low)
     yield _number(column.high)
     yield str(int(column.whole))
@@ -167,7 +181,7 @@ def _learning(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]
     for name, field in _LEARNING_CELLS.items():
         yield name, str(cells.index(field))
     yield "base_column", str(model.first(ProfileArrays, "base_mps"))
-    # Both times learned, offset, drive and intervention follow one another, as in the file.
+    # Both times the columns of LEARNED follow one another, as in the file.
     yield "learned_column", str(model.first(ProfileArrays, "learned_mps"))
     yield "following_column", str(model.first(NextArrays, "learned_mps"))
 

@@ -61,8 +61,11 @@ void learning_follow(const Importer *importer, State *state, Run *run) {
     state->record[l->profile_iteration].integer = count;
     if (count && state->record[l->apply_learned].integer) {
         double *learned = run->block + l->learned_column * p->nodes;
-        for (int column = 0; column < ITERATION_COLUMNS; column++)
-            memcpy(learned + column * p->nodes, profile_block(p, count, column), (size_t)(8 * p->nodes));
+        for (int column = 0; column < KERNEL_COLUMNS; column++) {
+            const double *values = profile_newest(p, COLUMN_LEARNED + column);
+            if (values) memcpy(learned + column * p->nodes, values, (size_t)(8 * p->nodes));
+            else memset(learned + column * p->nodes, 0, (size_t)(8 * p->nodes));
+        }
         run_call(l->adopt, state, run, 0.0);
     }
     run_call(model.refresh, state, run, 0.0);
@@ -80,6 +83,7 @@ Level learning_finish(const Importer *importer, State *state, Run *run, bool bef
     bool cut = state->record[l->intervening].integer;
     Lesson lesson = {run->block + l->base_column * state->nodes,
                      run->block + l->following_column * state->nodes,
+                     state->record[l->apply_learned].integer,
                      cut ? "drive, last intervention truncated" : "drive",
                      state->record[l->interventions].integer};
     return *run->folder ? store_save(importer, run->folder, &run->stored, &lesson) : INFO;

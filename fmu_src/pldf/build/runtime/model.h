@@ -61,11 +61,12 @@ typedef struct {
 extern const Model model;
 
 typedef struct {
-    const char *name;
+    const char *name, *unit;
     double low, high;
     bool whole;
 } ProfileColumn;
 
-/* The base profile's, then those of an iteration. */
-extern const ProfileColumn profile_columns[1 + ITERATION_COLUMNS];
+/* Of an iteration; those from COLUMN_LEARNED on, KERNEL_COLUMNS of them, are the kernel's too. */
+extern const ProfileColumn profile_columns[PROFILE_COLUMNS];
+extern const char *const profile_kinds[PROFILE_KINDS];
 extern const char *const phase_names[];

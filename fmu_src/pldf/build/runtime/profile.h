@@ -1,32 +1,44 @@
-/* The bytes of profile files and of prepared routes and scripts, checked before they are used. */
+/* The bytes of profile files, checked before they are used. */
 #pragma once
 
 #include "disk.h"
+#include "model.h"
 
 typedef struct { /* docs/profile-format.md */
     uint8_t *bytes; /* NULL: nothing stored yet; owned */
-    int64_t size, driver, nodes, count, lines, lines_end, head, stride;
+    int64_t size, version, driver, nodes, count, blocks, lines, lines_end, head, stride;
+    int64_t newest[PROFILE_COLUMNS]; /* where the block of each column begins; 0: all its values are */
     char route[17];
 } Profile;
 
-typedef struct { /* docs/native.md */
-    uint8_t *bytes; /* owned */
-    int64_t size, head, columns, rows, has_line;
-    char key[17];
-} Prepared;
-
 typedef struct { /* what a drive leaves behind */
-    const double *base, *columns; /* n values; the columns of an iteration, one by one */
+    const double *base, *columns; /* n values; those of the kernel, one column after the other */
+    bool carried; /* the other columns are those of the newest iteration, else zero */
     const char *note;
     int64_t interventions;
 } Lesson;
 
-/* Fill the fields from bytes and size; false, and the reason, if the bytes are not sound. */
+/* Fills the fields from bytes and size; false, and the reason, if the bytes are not sound. */
 bool profile_parse(Profile *profile, char *why);
-bool prepared_parse(Prepared *prepared, const char *kind, int64_t columns, char *why);
 
-const double *profile_block(const Profile *profile, int64_t iteration, int64_t column); /* from 1 */
+/* Values of the newest iteration, or of the base profile if there is none; NULL: all are zero. */
+const double *profile_newest(const Profile *profile, int column);
 bool profile_same_history(const Profile *a, const Profile *b);
-/* Bytes of the profile (driver, route and nodes are set) with one more iteration; NULL: memory. */
+/* Bytes of the profile (driver, route and nodes are set) with one more iteration, in the newest
+   format; NULL: memory. */
 uint8_t *profile_extend(const Profile *profile, const Lesson *lesson, int64_t *size);
-uint32_t checksum(const uint8_t *bytes, int64_t size);
+
+/* Between profile.c, which reads, and profile_history.c */
+
+typedef struct {
+    int64_t number, interventions;
+    const char *kind, *note; /* the note has no zero behind it */
+    int64_t note_length;
+} IterationLine;
+
+/* Looks at an iteration (column -1), then at each of its blocks; returns whether to go on. */
+typedef bool Visit(void *context, const IterationLine *line, int column, int64_t block);
+bool profile_walk(const Profile *profile, Visit *visit, void *context);
+
+int64_t profile_stride(int64_t nodes);
+bool profile_same_values(const double *a, const double *b, int64_t nodes); /* NULL: all are zero */

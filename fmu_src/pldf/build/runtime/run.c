@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "prepared.h"
+
 void run_release(Run *run) {
     free(run->block);
     profile_free(&run->stored);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "session.h"
+#include "text.h"
 
 /* How many values per node and per script line belong to the state. */
 static int64_t kept_values(int64_t nodes, int64_t rows) {
