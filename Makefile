@@ -4,6 +4,7 @@
 # make build   the FMUs into dist/                 make native    those without Python: dist/native/
 # make wheel   the Python package into dist/       make bench     all speeds as JSON
 # make clean   takes away all but .venv and out/
+# make lock    the packages of development and CI chosen anew: requirements-dev.txt
 #
 # Needs make and Python 3.11 or newer; PYTHON=... chooses one. STUDY=... passes options for the one
 # driver, e.g. make study STUDY="--seed 7 --set wish.offset_mps=-2"
@@ -22,7 +23,7 @@ BUILT := dist/.built
 FMU_SOURCES := $(shell find fmu_src vehicle_models LICENSE -type f \
 	-not -path '*/__pycache__/*' -not -path '*.egg-info/*')
 
-.PHONY: help study test test-all lint format docs bench build native wheel setup clean
+.PHONY: help study test test-all lint format docs bench build native wheel setup lock clean
 
 help:
 	@sed -n '1,/^$$/s/^# \{0,1\}//p' Makefile
@@ -70,16 +71,23 @@ $(BUILT): $(READY) $(FMU_SOURCES)
 	$(BIN)/pldf build --out dist
 	@touch $@
 
-# pip learned --group in 25.1; the stamp is written last, so an interrupted set-up is repeated.
-$(READY): pyproject.toml
+# Exactly the packages of requirements-dev.txt, each checked against its hash; then this one, which
+# needs no other. The stamp is written last, so an interrupted set-up is repeated.
+$(READY): pyproject.toml requirements-dev.txt
 	@test -n "$(PYTHON)" || { echo "make: no Python 3.11 or newer found;" \
 		"install one or name it: make PYTHON=/path/to/python3.11 $(MAKECMDGOALS)" >&2; exit 1; }
 	$(PYTHON) -c 'import sys; sys.exit(None if sys.version_info >= (3, 11) else \
 		"make: " + sys.version.split()[0] + " is too old, Python 3.11 or newer is needed")'
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --upgrade "pip>=25.1"
-	$(BIN)/python -m pip install --quiet --editable . --group dev
+	$(BIN)/python -m pip install --quiet --require-hashes --requirement requirements-dev.txt
+	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
 	@touch $@
+
+# The newest packages that pyproject.toml allows, for every system and Python at once.
+lock: $(READY)
+	$(BIN)/python -m pip install --quiet "uv>=0.13"
+	$(BIN)/uv pip compile --quiet --upgrade --universal --python-version 3.11 --generate-hashes \
+		--group dev pyproject.toml --custom-compile-command "make lock" --output-file requirements-dev.txt
 
 # Leaves .venv (set-up takes minutes) and the recordings and profiles in out/.
 clean:
