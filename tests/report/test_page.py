@@ -61,3 +61,7 @@ def test_a_study_without_recordings_has_a_report(
     text = report.read_text(encoding="utf-8")
     assert "3 recorded participants" in text
     assert "no recordings" in text
+
+
+def test_plotly_brings_its_licence(html: str) -> None:
+    assert re.search(r"plotly\.js v[\d.]+\s.{0,200}Licensed under the MIT license", html, re.S)
