@@ -3,6 +3,7 @@
 # make lint    formatting, lints, types, imports   make docs      the site into site/
 # make build   the FMUs into dist/                 make native    those without Python: dist/native/
 # make wheel   the Python package into dist/       make bench     all speeds as JSON
+# make faults  tries to break every promise of docs/reliability.md: 10 minutes, a JSON at the end
 # make clean   takes away all but .venv and out/
 # make lock    the packages of development and CI chosen anew: requirements-dev.txt
 #
@@ -23,7 +24,7 @@ BUILT := dist/.built
 FMU_SOURCES := $(shell find fmu_src vehicle_models LICENSE -type f \
 	-not -path '*/__pycache__/*' -not -path '*.egg-info/*')
 
-.PHONY: help study test test-all lint format docs bench build native wheel setup lock clean
+.PHONY: help study test test-all lint format docs bench faults build native wheel setup lock clean
 
 help:
 	@sed -n '1,/^$$/s/^# \{0,1\}//p' Makefile
@@ -54,6 +55,9 @@ docs: $(READY)
 
 bench: $(BUILT)
 	@$(BIN)/python benchmarks/bench.py
+
+faults: $(READY)
+	@$(BIN)/python faults/campaign.py $(FAULTS)
 
 build: $(BUILT)
 

@@ -29,6 +29,7 @@ from ...errors import ModelError
 from ...kernel.arrays import FloatArray
 from ..disk import reason
 from .declared import Column, Fault, Format, TableError
+from .writer import plain_text
 
 _CELL_MAX: Final = 40  # characters of a wrong cell that an error repeats
 _HEADER_MAX: Final = 120  # the same for names of columns
@@ -237,7 +238,7 @@ def _cell(row: Sequence[str], place: int) -> str:
 def _convert(table: Table, column: Column, cells: Sequence[str]) -> list[Fault]:
     """Put a column into ``table``; return the cells that are not what they should be."""
     if column.kind == "text":
-        texts = table.texts[column.name] = [cell.strip() for cell in cells]
+        texts = table.texts[column.name] = [plain_text(cell).strip() for cell in cells]
         fits = re.compile(column.pattern or r"(?s:.+)").fullmatch
         wrong = [row for row, text in enumerate(texts) if not fits(text)]
     else:

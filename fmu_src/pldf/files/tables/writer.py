@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -18,6 +18,11 @@ from ..disk import reason, replace_file
 Cell = str | float  # bool and int are among them
 
 _TO_QUOTE: Final = re.compile(r'[,"\r\n]|^#')
+# Spreadsheets calculate with a text that begins so, a name like =cmd|'/c calc'!A1 among them. What
+# OWASP advises against that ("CSV injection"): an apostrophe before it. A text that has one already
+# gets another, so that ``plain_text`` knows which is ours.
+_FORMULA: Final = re.compile("[ ']*[=+\\-@\t\r\n\uff1d\uff0b\uff0d\uff20]")
+_NUMBER: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|-inf", re.ASCII)
 
 
 def table_csv(
@@ -26,7 +31,9 @@ def table_csv(
     """Return the content of a file with these columns of equal length.
 
     Args:
-        columns: name -> cells: text as it is, flags as 0 and 1, numbers as short as they read back.
+        columns: name -> cells: text as it is (what a spreadsheet would take for a formula behind an
+            apostrophe, which the reader takes away), flags as 0 and 1, numbers as short as they
+            read back.
         comments: lines to stand before the header, behind ``#``.
     """
     texts = (_texts(cells) for cells in columns.values())
@@ -60,9 +67,16 @@ def _texts(cells: Sequence[Cell] | FloatArray) -> Iterable[str]:
     return map(_text, cells)
 
 
-def _text(cell: Any) -> str:
+def _text(cell: Cell) -> str:
     if isinstance(cell, str):
+        if _FORMULA.match(cell) and not _NUMBER.fullmatch(cell):
+            cell = "'" + cell
         return '"' + cell.replace('"', '""') + '"' if _TO_QUOTE.search(cell) else cell
     if isinstance(cell, bool | np.bool_):
         return "1" if cell else "0"
     return repr(cell.item() if isinstance(cell, np.generic) else cell)
+
+
+def plain_text(cell: str) -> str:
+    """Return the text that was written as ``cell``."""
+    return cell[1:] if cell.startswith("'") and _FORMULA.match(cell) else cell
