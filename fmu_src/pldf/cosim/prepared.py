@@ -1,6 +1,6 @@
 """Routes and driver scripts as float64 columns, so that a native FMU parses neither XML nor CSV.
 
-The layout is described to the byte in ``docs/native.md``; ``build/runtime/profile.c`` reads it.
+The layout is described to the byte in ``docs/native.md``; ``build/runtime/prepared.c`` reads it.
 """
 
 from __future__ import annotations
