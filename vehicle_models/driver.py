@@ -25,6 +25,7 @@ class ScriptedDriver(Instance[DriverState]):
     """A driver who follows a script, or a hidden wish, or keeps hands and feet off."""
 
     texts: DriverTexts
+    groups = (WishArrays, ScriptArrays)
 
     def __init__(self) -> None:
         super().__init__(DriverState(), DriverTexts())

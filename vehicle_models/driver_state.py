@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from pldf.kernel.codes import MODE
+from pldf.kernel.ranges import flag, nanoseconds, number, whole
 from pldf.kernel.signals import (
     count_input,
     count_parameter,
@@ -187,22 +188,22 @@ class DriverMemory:
     planner_accel_max_mps2: float = 0.0
     planner_accel_min_mps2: float = 0.0
     planner_jerk_max_mps3: float = 0.0
-    time_ns: int = 0
-    phase: int = AWAY
-    phase_ns: int = 0  # since the phase began
-    delay_ns: int = 0  # what this phase, or this urge, waits for
-    urge: int = 0  # 1 = gas, -1 = brake, 0 = content
-    urge_ns: int = 0
-    attempts: int = 0  # RESUME presses since the function was last active
-    was_active: int = 0
-    releasing: int = 0
-    button: int = 0  # control code of the lever contact held, 0 = none
-    button_ns: int = 0  # since it was pressed
-    settled_ns: int = 0  # since the car cruises at the set speed
-    tipping: int = 0  # a series of tips has begun
-    random: float = 1.0  # MINSTD, a whole number
-    invalid_input: int = 0
-    warned: int = 0
+    time_ns: int = nanoseconds()
+    phase: int = whole(AWAY, ON_BRAKE)
+    phase_ns: int = nanoseconds()  # since the phase began
+    delay_ns: int = nanoseconds()  # what this phase, or this urge, waits for
+    urge: int = whole(-1, 1)  # 1 = gas, -1 = brake, 0 = content
+    urge_ns: int = nanoseconds()
+    attempts: int = whole(0, 999_999_999)  # RESUME presses since the function was last active
+    was_active: int = flag()
+    releasing: int = flag()
+    button: int = whole(0, 8)  # control code of the lever contact held, 0 = none
+    button_ns: int = nanoseconds()  # since it was pressed
+    settled_ns: int = nanoseconds()  # since the car cruises at the set speed
+    tipping: int = flag()  # a series of tips has begun
+    random: float = number(1.0, 2147483646.0, start=1.0)  # MINSTD, a whole number
+    invalid_input: int = flag()
+    warned: int = flag()
 
 
 # A dataclass takes the fields of its LAST base first; value references follow from their order

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import Annotated, Final, NamedTuple
 
 from pldf.kernel.arrays import Floats
+from pldf.kernel.ranges import TIME_MAX_NS, Range
 
 from .driver_state import DriverState
 
@@ -29,11 +30,11 @@ class ScriptArrays(NamedTuple):
     """Events, one per index, in the order of the file."""
 
     at: Floats  # s or m
-    unit: Floats  # AT_TIME or AT_POSITION
-    control: Floats  # control code
-    value: Floats  # pedal travel; 1 for the lever
+    unit: Annotated[Floats, Range(0, 1)]  # AT_TIME or AT_POSITION
+    control: Annotated[Floats, Range(1, 8)]  # control code
+    value: Annotated[Floats, Range(0, 1)]  # pedal travel; 1 for the lever
     duration_s: Floats
-    began_ns: Floats  # time at which the event began, -1 = not yet
+    began_ns: Annotated[Floats, Range(-1, TIME_MAX_NS)]  # when it began, -1 = not yet
 
 
 def follow_script(st: DriverState, script: ScriptArrays) -> None:

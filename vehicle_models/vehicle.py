@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from pldf.instance import Arrays, Instance, view
+from pldf.kernel.arrays import Floats
 from pldf.roads import chosen_route, route_arrays
 
 from .vehicle_kernel import vehicle_refresh, vehicle_start, vehicle_step
@@ -15,6 +18,12 @@ INVALID_INPUT = (
 )
 
 
+class GradeArrays(NamedTuple):
+    """What the vehicle knows of the route; one value without a route."""
+
+    grade: Floats  # node: rise over run
+
+
 class LongitudinalVehicle(Instance[VehicleState]):
     """A car on its route: follows an acceleration request, obeys the pedals.
 
@@ -22,6 +31,7 @@ class LongitudinalVehicle(Instance[VehicleState]):
     """
 
     texts: VehicleTexts
+    groups = (GradeArrays,)
 
     def __init__(self) -> None:
         super().__init__(VehicleState(), VehicleTexts())

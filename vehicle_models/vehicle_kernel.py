@@ -16,14 +16,13 @@ from pldf.kernel.arrays import Floats
 from pldf.kernel.interpolation import value_at
 from pldf.kernel.substeps import substep_count
 
-from .vehicle_state import VehicleState
+from .vehicle_state import FINITE_MAX, VehicleState
 
 GRAVITY_MPS2 = 9.81
 # The drive fades out over this last part of the speed range instead of being switched.
 CUT_OFF_GAIN_PER_S = 1.0
 # Recuperation fades out below this speed, so that coasting ends without a jerk.
 COAST_FADE_MPS = 3.0
-FINITE_MAX = 1e300
 
 
 def vehicle_start(st: VehicleState, grade: Floats) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pldf.kernel.ranges import flag, number
 from pldf.kernel.signals import (
     count_parameter,
     flag_input,
@@ -18,6 +19,8 @@ from pldf.kernel.signals import (
     text_parameter,
 )
 from pldf.kernel.units import KMH_PER_MPS
+
+FINITE_MAX = 1e300  # larger numbers count as infinite
 
 
 @dataclass(slots=True)
@@ -112,19 +115,20 @@ class VehicleOutputs:
 class VehicleMemory:
     """What the vehicle keeps from step to step."""
 
-    inertia_kg: float = 0.0  # these four follow from the parameters
-    mps2_per_n: float = 0.0
-    drive_rate_per_s: float = 0.0
-    brake_rate_per_s: float = 0.0
+    inertia_kg: float = number(0.0, 1e6)  # these four follow from the parameters
+    mps2_per_n: float = number(0.0, 1.0)
+    drive_rate_per_s: float = number(0.0, 1e3)
+    brake_rate_per_s: float = number(0.0, 1e3)
     drive_force_n: float = 0.0
     brake_force_n: float = 0.0
     load_n: float = 0.0  # road load at the present position and speed
     drive_limit_n: float = 0.0  # largest drive force there
-    request_mps2: float = 0.0  # the inputs as used: finite, pedals within 0 and 1
-    gas: float = 0.0
-    brake: float = 0.0
-    invalid_input: int = 0
-    warned: int = 0
+    # the inputs as used: finite, pedals within 0 and 1
+    request_mps2: float = number(-FINITE_MAX, FINITE_MAX)
+    gas: float = number(0.0, 1.0)
+    brake: float = number(0.0, 1.0)
+    invalid_input: int = flag()
+    warned: int = flag()
 
 
 # A dataclass takes the fields of its LAST base first; value references follow from their order

@@ -78,6 +78,8 @@ class DrivingFunction(Instance[PldfState]):
         learned: what this drive taught, after ``finish``; None when nothing was to be learned.
     """
 
+    groups = (RouteArrays, ProfileArrays, TraceArrays)
+
     def __init__(self) -> None:
         super().__init__(PldfState(), Files())
         self.stored: StoredProfile | None = None

@@ -6,15 +6,13 @@ co-simulation and the in-process study see nothing but this class.
 
 from __future__ import annotations
 
-import hashlib
-import json
-import struct
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, fields
-from typing import Any, Generic, Literal, TypeVar, cast
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, Generic, Literal, TypeVar, cast
 
 import numpy as np
 
+from . import snapshot
 from .errors import ModelError
 from .kernel.arrays import FloatArray, Floats
 from .kernel.signals import signals_of
@@ -41,7 +39,11 @@ class Instance(Generic[RecordT]):
         texts: record of String parameters (a dataclass instance without fields if there are none).
         arrays: every float64 array that belongs to the state; set by ``initialize``.
         messages: what the binding has not yet handed to the user.
+        groups: named tuples of arrays that make up ``arrays``; those of one are equally long, those
+            of the first have a value per node.
     """
+
+    groups: ClassVar[tuple[Any, ...]]
 
     def __init__(self, record: RecordT, texts: Any) -> None:
         self.record = record
@@ -90,42 +92,21 @@ class Instance(Generic[RecordT]):
         self.arrays = arrays
 
     def snapshot(self) -> bytes:
-        """Return the whole state as bytes: layout digest, record, texts, array lengths, arrays."""
-        texts = json.dumps(asdict(self.texts)).encode()
-        lengths = [len(array) for array in self.arrays]
-        head = struct.pack(f"<32sqq{len(lengths)}q", self._layout(), len(texts), *_counted(lengths))
-        numbers = struct.pack(self._format(), *(getattr(self.record, n) for n in self._names()))
-        return b"".join((head, numbers, texts, *(array.tobytes() for array in self.arrays)))
+        """Return the whole state as bytes."""
+        return snapshot.encode(self)
 
     def restore(self, state: bytes) -> None:
-        """Take over a state made by ``snapshot`` of the same model and build; else ModelError."""
-        if len(state) < _HEAD.size or state[:32] != self._layout():
-            raise ModelError("this FMU state belongs to another model or build; not restored")
-        _, text_size, count = _HEAD.unpack_from(state)
-        lengths = struct.unpack_from(f"<{count}q", state, _HEAD.size)
-        at = _HEAD.size + 8 * count
-        numbers = struct.unpack_from(self._format(), state, at)
-        at += struct.calcsize(self._format())
-        texts = json.loads(state[at : at + text_size])
-        at += text_size
-        if len(state) != at + 8 * sum(lengths):
-            raise ModelError("this FMU state is truncated; not restored")
-        for name, number in zip(self._names(), numbers, strict=True):
+        """Take over a state made by ``snapshot`` of the same model and build.
+
+        Raises:
+            ModelError: it was not, or a value is out of its range; nothing has changed.
+        """
+        found = snapshot.decode(self, state)
+        for name, number in found.numbers.items():
             setattr(self.record, name, number)
-        for name, text in texts.items():
+        for name, text in found.texts.items():
             setattr(self.texts, name, text)
-        self.attach(_split(state, at, lengths))
-
-    def _names(self) -> tuple[str, ...]:
-        return tuple(f.name for f in fields(self.record))  # type: ignore[arg-type]
-
-    def _format(self) -> str:
-        kinds = ("q" if isinstance(f.default, int) else "d" for f in fields(self.record))  # type: ignore[arg-type]
-        return "<" + "".join(kinds)
-
-    def _layout(self) -> bytes:
-        text = f"{type(self).__qualname__} {self._format()} {self._names()}"
-        return hashlib.sha256(text.encode()).digest()
+        self.attach(found.arrays)
 
 
 def view(array: FloatArray) -> Floats:
@@ -142,18 +123,3 @@ def zeros(kind: Callable[..., TupleT], nodes: int) -> TupleT:
     """Return a named tuple of ``kind`` with an array of ``nodes`` zeros for each field."""
     names: tuple[str, ...] = cast(Any, kind)._fields
     return kind(*(np.zeros(nodes) for _ in names))
-
-
-_HEAD = struct.Struct("<32sqq")
-
-
-def _counted(lengths: list[int]) -> list[int]:
-    return [len(lengths), *lengths]
-
-
-def _split(state: bytes, offset: int, lengths: tuple[int, ...]) -> Arrays:
-    arrays = []
-    for length in lengths:
-        arrays.append(np.frombuffer(state, np.float64, length, offset).copy())
-        offset += 8 * length
-    return tuple(arrays)

@@ -55,7 +55,7 @@ def test_invalid_fmu_fails_the_build(tmp_path, monkeypatch, capsys):
 
 
 def test_source_that_needs_more_than_numpy_fails_the_build(tmp_path, monkeypatch, capsys):
-    bad = recipe_with(tmp_path, "pldf/instance.py", "import json\n", "import json, numba\n")
+    bad = recipe_with(tmp_path, "pldf/snapshot.py", "import json\n", "import json, numba\n")
     monkeypatch.setattr(fmu_build, "FMUS", {"Cart": bad})
     assert cli.main(["build", "--out", str(tmp_path / "out")]) == 1
     assert "'numba' must not be needed in an FMU" in capsys.readouterr().err

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from native_hosts import HEADERS, MODELS, PLATFORMS, WARNINGS, Hosts, Value, hos
 from pldf.build import fmus as fmu_build
 from pldf.profiles.profile_file import decode
 from pldf.profiles.profile_format_1 import encode_1
+from pldf.roads import packed_route
 
 pytest.importorskip("ziglang", reason="needs the extra: pip install -e .[native]")
 if sys.platform != "linux":
@@ -24,6 +26,7 @@ if sys.platform != "linux":
 
 from pldf.build.native.objects import compile_objects
 from pldf.build.native.table import header, source
+from pldf.cosim.prepared import write_prepared_route
 
 HERE = PLATFORMS["linux64"]
 RUNTIME = fmu_build.RUNTIME
@@ -107,6 +110,31 @@ def test_life_cycle_order_of_calls_instances_and_states(
     other = "ScriptedDriver" if model == "AdaptivePLDF" else "AdaptivePLDF"
     files = [sanitized.described(version, m, tmp_path / m) for m in (model, other)]
     sanitized.run("check", *files, cwd=tmp_path)
+
+
+FORGED: dict[str, dict[str, Value]] = {
+    "AdaptivePLDF": {"learn": 1},
+    "AdaptivePLDF by coordinates": {"localization": 1, "apply_learned": 0},
+    "LongitudinalVehicle": {},
+    "ScriptedDriver": {},
+    "ScriptedDriver with a script": {"kind": 1},
+}
+
+
+@pytest.mark.parametrize("what", FORGED)
+@pytest.mark.parametrize("version", [2, 3])
+def test_every_word_of_a_state_forged(
+    sanitized: Sanitized, version: int, what: str, tmp_path: Path
+) -> None:
+    """It is refused and nothing changes, or drives on: no crash, no NaN (a road of 40 m)."""
+    road = packed_route(0)
+    write_prepared_route(
+        replace(road, **{name: knots[:40] for name, knots in road.knots.items()}),
+        tmp_path / "road.prepared",
+    )
+    settings = {"route_file": str(tmp_path / "road.prepared"), **FORGED[what]}
+    file = sanitized.described(version, what.split(maxsplit=1)[0], tmp_path / "fmu.txt", settings)
+    sanitized.run("forge", file, cwd=tmp_path)
 
 
 # Files

@@ -16,7 +16,7 @@ from pldf.fmi.session import Session
 from pldf.function import DrivingFunction
 from pldf.instance import Instance
 from pldf.kernel.codes import INPUT_OK, OFF_ROUTE, XY
-from pldf.kernel.signals import signals_of
+from pldf.kernel.signals import by_reference, signals_of
 
 from vehicle_models.driver import ScriptedDriver
 from vehicle_models.vehicle import LongitudinalVehicle
@@ -34,7 +34,7 @@ class Run:
         self.session = Session(create)
         self.session.model.texts.route_file = str(route)
         self.access = Access(self.session.signals, NUMBERS)
-        self.references = {s.field: i for i, s in enumerate(self.session.signals)}
+        self.references = {s.field: i for i, s in by_reference(self.session.signals).items()}
         self.outputs = [s.field for s in self.session.signals if s.causality == "output"]
         self.set(parameters)
 

@@ -9,6 +9,7 @@ import pytest
 from pldf.fmi.access import Access
 from pldf.fmi.session import Session
 from pldf.function import DrivingFunction
+from pldf.kernel.signals import by_reference
 
 
 class Driven:
@@ -16,7 +17,7 @@ class Driven:
 
     def __init__(self) -> None:
         self.session = Session(DrivingFunction)
-        self.references = {s.name: i for i, s in enumerate(self.session.signals)}
+        self.references = {s.name: i for i, s in by_reference(self.session.signals).items()}
         self.texts = Access(self.session.signals, frozenset({"String"}))
         self.numbers = Access(
             self.session.signals, frozenset({"Real", "Integer", "Boolean", "Enumeration"})

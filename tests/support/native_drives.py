@@ -20,7 +20,7 @@ from native_hosts import Unpacked, Value
 from numpy.typing import NDArray
 from pldf.function import DrivingFunction
 from pldf.instance import Instance
-from pldf.kernel.signals import signals_of
+from pldf.kernel.signals import variables_of
 from pldf.roads import packed_route
 
 from vehicle_models.driver import ScriptedDriver
@@ -63,7 +63,9 @@ class Case:
             [0.02, 0.037, 0.05, 1e-3, 1.7e-13, 0.0], STEPS, p=[0.6, 0.2, 0.1, 0.05, 0.03, 0.02]
         )
         inputs = self.inputs(rng, step_s)
-        signals = [s for s in signals_of(INSTANCES[self.model]().record) if s.causality == "input"]
+        made = INSTANCES[self.model]()
+        known = variables_of(made.record, made.texts)
+        signals = [s for s in known if s.causality == "input"]
         assert inputs.keys() <= {s.field for s in signals}
         columns = [inputs.get(s.field, np.full(STEPS, float(s.start))) for s in signals]
         return np.column_stack([np.cumsum(step_s) - step_s, step_s, *columns])
@@ -177,7 +179,7 @@ CASES: Final = {
 def by_source(case: Case, script: Table, store: Path) -> Table:
     """Drive in CPython, without FMI; return the results."""
     instance = INSTANCES[case.model]()
-    signals = signals_of(instance.record)
+    signals = variables_of(instance.record, instance.texts)
     inputs, outputs = ([s.field for s in signals if s.causality == c] for c in ("input", "output"))
     fields = {s.name: s.field for s in signals}
     for name, value in case.settings.items():

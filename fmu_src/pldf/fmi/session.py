@@ -121,6 +121,8 @@ class Session:
         if len(state) < _STATE.size or not state.startswith(_MAGIC):
             raise ModelError("these bytes are not a state of this FMU; not restored")
         _, phase, ready, stale, time = _STATE.unpack_from(state)
+        if phase > Phase.TERMINATED or not (isfinite(time) or time == -inf):
+            raise ModelError(f"this FMU state was changed (phase {phase}, time {time})")
         self._restore_model(state[_STATE.size :], Phase(phase))
         self.phase = Phase(phase)
         # Before the first step nothing is lost when the model is initialized once more.
@@ -143,14 +145,20 @@ class Session:
         model = self.create()
         model.restore(state)
         here = self._prepared and self._has_parameters_of(model)
-        if phase is Phase.STEPPING and not here:
-            model.initialize()
-            model.restore(state)
-            self._prepared = True
-            self.model = model
-        else:
+        if phase is not Phase.STEPPING:
             self.model.restore(state)
             self._prepared = here
+            return
+        lengths = [len(array) for array in model.arrays]
+        if not here:
+            model.initialize()
+        if [len(array) for array in (self.model if here else model).arrays] != lengths:
+            raise ModelError("the route of this state has changed; not restored")
+        if here:
+            self.model.restore(state)
+        else:
+            model.restore(state)
+            self.model, self._prepared = model, True
 
     def _has_parameters_of(self, other: Instance[Any]) -> bool:
         ours = self.model

@@ -10,10 +10,12 @@ times faster and gives a Python float); compiled by numba it gets the NumPy arra
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import Annotated, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .ranges import NODE
 
 # Outside the kernels: a vector of one value per row, metre or person.
 FloatArray = NDArray[np.float64]
@@ -52,7 +54,7 @@ class ProfileArrays(NamedTuple):
     lessons: Floats  # node: how many drives shaped it
     bound: Floats  # node: which bound cut it last (BOUND in codes)
     limit_end_m: Floats  # node: position of the next change of the legal limit, else route end
-    turn_m: Floats  # node: position where the present or next acceleration phase ends
+    turn_m: Annotated[Floats, NODE]  # node: where the present or next acceleration phase ends
 
 
 class TraceArrays(NamedTuple):

@@ -97,7 +97,7 @@ def _open_intervention(st: PldfState, trace: TraceArrays) -> None:
     st.intervening = 1
     # Pedal bounce: the gap belongs to the intervention after all, so its time is charged late, for
     # the combined rate only what no set-speed offset has covered already.
-    if st.intervention_end_ns >= 0 and gap_ns < 1e9 * st.learning_pedal_gap_s:
+    if st.drive_interventions > 0 and gap_ns < 1e9 * st.learning_pedal_gap_s:
         st.pedal_ns += gap_ns
         st.combined_ns += st.gap_uncovered_ns
         _extend(st, trace)

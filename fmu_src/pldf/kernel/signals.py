@@ -223,4 +223,4 @@ def text_parameter(description: str, *, name: str = "") -> Any:
 def since(release: str, specifier: Any) -> Any:
     """Say that ``release`` brought the variable that one of the functions above specifies."""
     details = {**specifier.metadata[_KEY], "since": release}
-    return field(default=specifier.default, metadata={_KEY: details})
+    return field(default=specifier.default, metadata={**specifier.metadata, _KEY: details})

@@ -8,12 +8,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .codes import MODE, PROFILE_STATUS, REASON
+from .codes import INPUT_STATE, MODE, PROFILE_STATUS, REASON
 from .parameters import (
     ControlParameters,
     GeneralParameters,
     LearningParameters,
     PlannerParameters,
+)
+from .ranges import (
+    LAST_NODE,
+    NODES,
+    TIME_MAX_NS,
+    anything,
+    code,
+    flag,
+    holds,
+    nanoseconds,
+    whole,
 )
 from .signals import (
     choice_output,
@@ -23,6 +34,8 @@ from .signals import (
     real_input,
     real_output,
 )
+
+COUNT_MAX = 999_999_999
 
 
 @dataclass
@@ -64,7 +77,7 @@ class Outputs:
         "The vehicle shall follow the request (ACTIVE, GAS_OVERRIDE)", held=True
     )
     # Numbers, not an enumeration: libcosim drops enumerations, and the driver needs the mode.
-    mode: int = count_output(f"Mode of the function: {MODE.legend}", held=True)
+    mode: int = holds(code(MODE), count_output(f"Mode of the function: {MODE.legend}", held=True))
     target_speed_mps: float = real_output("Speed the function aims at here", "m/s")
     base_speed_mps: float = real_output("Base profile here", "m/s")
     set_speed_mps: float = real_output("Set speed in force", "m/s")
@@ -77,8 +90,13 @@ class Outputs:
         "Share of this drive with a set-speed offset", "", held=True
     )
     rate_combined: float = real_output("Share of this drive with either", "", held=True)
-    drive_interventions: int = count_output("Pedal interventions in this drive", held=True)
-    profile_iteration: int = count_output("Number of drives learned so far", held=True)
+    drive_interventions: int = holds(
+        whole(0, COUNT_MAX, at_most=NODES),
+        count_output("Pedal interventions in this drive", held=True),
+    )
+    profile_iteration: int = holds(
+        whole(0, COUNT_MAX), count_output("Number of drives learned so far", held=True)
+    )
     profile_status: int = choice_output(
         "What became of the stored profile", PROFILE_STATUS, held=True
     )
@@ -93,45 +111,46 @@ class Outputs:
 class Memory:
     """What the function remembers from step to step. Times are whole nanoseconds."""
 
-    time_ns: int = 0
+    time_ns: int = nanoseconds()
     s_m: float = 0.0
     ahead_m: float = 0.0  # travel from the last sample to the end of the step
-    sampled_s_m: float = 0.0  # the position inputs of the last sample
-    sampled_x_m: float = 0.0
-    sampled_y_m: float = 0.0
-    localized: int = 0
-    input_state: int = 0
-    valid_ns: int = 0  # when the inputs were last valid
-    invalid_ns: int = 0  # when they were last not
-    lever_was: int = 0
-    lever_free_ns: int = 0
+    sampled_s_m: float = anything()  # the position inputs of the last sample
+    sampled_x_m: float = anything()
+    sampled_y_m: float = anything()
+    localized: int = flag()
+    input_state: int = code(INPUT_STATE)
+    valid_ns: int = nanoseconds(at_most="time_ns")  # when the inputs were last valid
+    invalid_ns: int = nanoseconds(at_most="time_ns")  # when they were last not
+    lever_was: int = whole(0, 63)  # sum of the contacts' codes
+    lever_free_ns: int = nanoseconds()
     manual_set_mps: float = 0.0  # 0 = none
     manual_end_m: float = 0.0
     manual_behind_mps: float = 0.0  # the profile's speed there
     shown_set_mps: float = 0.0  # manual set speed shown at the end of the last step, 0 = none
     # recorder: the last two knots of the resampled drive, and the sample before this one
-    samples: int = 0
+    samples: int = whole(0, TIME_MAX_NS)
     from_s_m: float = 0.0
     from_speed_mps: float = 0.0
     from_time_s: float = 0.0
     knot_s_m: float = 0.0
     knot_speed_mps: float = 0.0
     knot_time_s: float = 0.0
-    previous_ns: int = 0
+    previous_ns: int = nanoseconds(at_most="time_ns")
     previous_s_m: float = 0.0
     previous_speed_mps: float = 0.0
-    previous_mode: int = 0
-    previous_brake: int = 0
+    previous_mode: int = code(MODE)
+    previous_brake: int = flag()
     previous_set_mps: float = 0.0
-    first_node: int = 0  # recorded are the nodes first_node .. first_node + nodes - 1
-    nodes: int = 0
-    intervening: int = 0
-    intervention_end_ns: int = -1
-    gap_uncovered_ns: int = 0
-    total_ns: int = 0
-    pedal_ns: int = 0
-    set_speed_ns: int = 0
-    combined_ns: int = 0
+    # recorded are the nodes first_node .. first_node + nodes - 1
+    first_node: int = whole(0, COUNT_MAX, at_most=LAST_NODE)
+    nodes: int = whole(0, COUNT_MAX, at_most=NODES, plus="first_node")
+    intervening: int = whole(0, 1, at_most="drive_interventions")
+    intervention_end_ns: int = nanoseconds(low=-1, start=-1, at_most="time_ns")
+    gap_uncovered_ns: int = nanoseconds()
+    total_ns: int = nanoseconds()
+    pedal_ns: int = nanoseconds(at_most="total_ns")
+    set_speed_ns: int = nanoseconds(at_most="total_ns")
+    combined_ns: int = nanoseconds(at_most="total_ns")
 
 
 # A dataclass takes the fields of its LAST base first; value references follow from their order

@@ -88,6 +88,7 @@ void replay(const Fmu *fmu, const char *script, char **results, int count);
 void check(const char *description, const char *other, bool same_model);
 void hostile(const Fmu *fmu, long steps);
 void attempt(const Fmu *fmu);
+void forge(const Fmu *fmu);
 void reads(const Fmu *fmu, const char *script);
 void little_stack(const Fmu *fmu, const char *script, long kilobytes);
 uint32_t dice(uint32_t sides);

@@ -4,6 +4,7 @@
           native_host hostile DESCRIPTION STEPS
           native_host reads DESCRIPTION SCRIPT
           native_host stack DESCRIPTION SCRIPT KILOBYTES
+          native_host forge DESCRIPTION
           native_host attempt DESCRIPTION [DESCRIPTION ...]
    Ends with status 0 if all is well, and says on stderr which line is not. */
 #include <string.h>
@@ -16,6 +17,7 @@ static void drive(const char *job, char **arguments, int count) {
     else if (!strcmp(job, "hostile")) hostile(fmu, atol(arguments[1]));
     else if (!strcmp(job, "reads")) reads(fmu, arguments[1]);
     else if (!strcmp(job, "stack")) little_stack(fmu, arguments[1], atol(arguments[2]));
+    else if (!strcmp(job, "forge")) forge(fmu);
     else attempt(fmu);
     fmu_close(fmu);
 }

@@ -15,6 +15,7 @@ from ...fmi.session import STEP_MAX_S
 from ...function import LEARNED
 from ...kernel.arrays import NextArrays, ProfileArrays
 from ...kernel.codes import LOCALIZATION, PROFILE_STATUS
+from ...kernel.ranges import LAST_NODE, NODES, Range, columns_of, ranges_of
 from ...kernel.signals import Signal, by_reference, time_reference, variables_of
 from ...profiles.file_parts import ALIGNMENT, CHECKSUM_SIZE, COLUMNS, NODES_MAX, Column
 from ...profiles.profile_format_1 import COLUMNS_1
@@ -76,6 +77,8 @@ def source(model: NativeModel, guid: str, token: str) -> str:
     lines += ["", "static const Cell defaults[] = {"]
     lines += [f"    {_cell(f.default)}, /* {f.name} */" for f in fields(model.record)]
     lines += ["};"]
+    lines += _array("static const Range ranges", _cell_ranges(model, cells))
+    lines += _array("static const Range column_ranges", _column_ranges(model))
     lines += _texts("static const char *const watch_texts", model.watch.texts)
     lines += _texts("const char *const phase_names", (phase.name for phase in Phase))
     lines += _array("const ProfileColumn profile_columns", map(_column, COLUMNS))
@@ -119,6 +122,35 @@ def signals(model: NativeModel) -> tuple[Signal, ...]:
     return variables_of(model.record, model.texts)
 
 
+def _cell_ranges(model: NativeModel, cells: list[str]) -> Iterator[Iterable[str]]:
+    """Yield what each cell of a restored state may hold."""
+    ranges = ranges_of(model.record)
+    watched = ranges[model.watch.field]
+    if watched != Range(0, len(model.watch.texts) - 1):
+        raise ValueError(f"{model.watch.field}: {watched} does not fit the texts of the watch")
+    for spec in fields(model.record):
+        kind = "KIND_INTEGER" if isinstance(spec.default, int) else "KIND_REAL"
+        allowed = ranges[spec.name]
+        yield _range(kind, allowed, cells) if allowed is not None else _range("0", Range(), cells)
+
+
+def _column_ranges(model: NativeModel) -> Iterator[Iterable[str]]:
+    """Yield what each kept column may hold: those per node, then those per line of a script."""
+    events = (model.events,) if model.events is not None else ()
+    for group in (*model.groups[: model.kept], *events):
+        for allowed in columns_of(group):
+            yield _range("KIND_REAL", allowed, [])
+
+
+def _range(kind: str, allowed: Range, cells: list[str]) -> Iterator[str]:
+    places = {"": "NOWHERE", NODES: "NODES", LAST_NODE: "LAST_NODE"}
+    yield kind
+    yield _number(allowed.low)
+    yield _number(allowed.high)
+    yield places.get(allowed.at_most) or str(cells.index(allowed.at_most))
+    yield places.get(allowed.plus) or str(cells.index(allowed.plus))
+
+
 def _variables(model: NativeModel) -> list[Iterable[str]]:
     """Return one row per value reference; ``time``, which only FMI 3.0 asks for, is among them."""
     known = signals(model)
@@ -149,6 +181,8 @@ def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
     yield "variables", "variables"
     yield "variable_count", str(len(_variables(model)))
     yield "defaults", "defaults"
+    yield "ranges", "ranges"
+    yield "column_ranges", "column_ranges"
     for entry in ("start", "refresh", "step"):
         yield entry, f"model_{entry}" if entry in model.entries else "NULL"
     yield "node_columns", str(model.node_columns)

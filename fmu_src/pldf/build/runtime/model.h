@@ -26,6 +26,15 @@ typedef struct { /* its index is the value reference */
     double low, high;
 } Variable;
 
+enum { NOWHERE = -1, NODES = -2, LAST_NODE = -3 }; /* in place of a cell */
+
+typedef struct { /* what a restored state may hold (pldf/kernel/ranges.py) */
+    int32_t kind; /* integer or real; 0: anything */
+    double low, high;
+    int32_t at_most; /* cell of the number that bounds it as well */
+    int32_t plus;    /* cell of the number that is added before that */
+} Range;
+
 typedef struct { /* value references of two Real parameters */
     int32_t allowed, used;
 } Bound;
@@ -44,6 +53,7 @@ typedef struct {
     const Variable *variables;
     int32_t variable_count;
     const Cell *defaults;
+    const Range *ranges, *column_ranges; /* of the cells, of the columns that are kept */
     Entry *start, *refresh, *step; /* refresh is NULL if outputs follow no input without a step */
     /* columns of the block: per node (the first ones belong to the state), then per script line */
     int32_t node_columns, kept_columns, script_columns, route_column;

@@ -118,30 +118,51 @@ static bool has_sound_head(const State *state) {
            (isfinite(state->time) || (!is_whole(state) && state->time == -INFINITY));
 }
 
-/* An importer may set a number to any value, so those of inputs and parameters are free. */
-static bool has_sound_values(const State *state) {
-    for (const Variable *v = model.variables; v < model.variables + model.variable_count; v++) {
-        bool counts = v->kind & (KIND_INTEGER | KIND_ENUMERATION) && v->causality == OUTPUT;
-        if (!counts && v->kind != KIND_BOOLEAN) continue;
-        double value = (double)state->record[v->cell].integer;
-        if (!(value >= v->low && value <= v->high)) return false;
-    }
-    return within(state->record[model.watch].integer, 0, model.watch_count - 1);
+static double place_of(const State *state, int32_t cell) {
+    if (cell == NODES) return (double)state->nodes;
+    if (cell == LAST_NODE) return (double)state->nodes - 1.0;
+    return cell == NOWHERE ? 0.0 : (double)state->record[cell].integer;
 }
 
-/* What was recorded lies on the route. */
+/* What depends on the route is meaningless without one, and computed anew with it. */
+static bool is_in_range(const State *state, const Range *range, double value) {
+    double high = range->high;
+    if (range->at_most != NOWHERE && is_whole(state))
+        high = fmin(high, place_of(state, range->at_most) - place_of(state, range->plus));
+    return value >= range->low && value <= high; /* NaN is not */
+}
+
 static bool has_sound_record(const State *state) {
-    const Learning *l = model.learning;
-    if (!l || !is_whole(state)) return true;
-    const Cell *record = state->record;
-    int64_t first = record[l->first_node].integer, count = record[l->interventions].integer;
-    return within(first, 0, state->nodes) && within(count, 0, state->nodes) &&
-           within(record[l->nodes].integer, 0, state->nodes - first) &&
-           within(record[l->intervening].integer, 0, count > 0);
+    for (int i = 0; i < MODEL_CELLS; i++) {
+        const Range *range = &model.ranges[i];
+        Cell cell = state->record[i];
+        double value = range->kind == KIND_INTEGER ? (double)cell.integer : cell.real;
+        if (range->kind && !is_in_range(state, range, value)) return false;
+    }
+    return true;
+}
+
+static bool has_sound_column(const State *state, const Range *range, const uint8_t *bytes, int64_t count) {
+    double value;
+    for (int64_t i = 0; i < count; i++) {
+        memcpy(&value, bytes + 8 * i, sizeof value);
+        if (!is_in_range(state, range, value)) return false;
+    }
+    return true;
+}
+
+static bool has_sound_columns(const State *state, const uint8_t *bytes) {
+    if (!is_whole(state)) return true;
+    for (int i = 0; i < model.kept_columns + model.script_columns; i++) {
+        int64_t count = i < model.kept_columns ? state->nodes : state->rows;
+        if (!has_sound_column(state, &model.column_ranges[i], bytes, count)) return false;
+        bytes += 8 * count;
+    }
+    return true;
 }
 
 /* Whether these bytes, with a checksum behind them, are a state of this build. Anybody can write a
-   checksum, so what is used as an index or a size is checked as well. */
+   checksum, so every value is checked as well. */
 static bool is_state(const uint8_t *bytes, size_t size) {
     State state;
     uint32_t sum;
@@ -150,7 +171,8 @@ static bool is_state(const uint8_t *bytes, size_t size) {
     memcpy(&sum, bytes + size, sizeof sum);
     return sum == checksum(bytes, (int64_t)size) && state.size == (int64_t)size &&
            strncmp(state.guid, model.guid, sizeof state.guid) == 0 && has_sound_size(&state) &&
-           has_sound_head(&state) && has_sound_values(&state) && has_sound_record(&state);
+           has_sound_head(&state) && has_sound_record(&state) &&
+           has_sound_columns(&state, bytes + sizeof state);
 }
 
 bool session_deserialize(Session *s, const void *bytes, size_t size, void **state) {

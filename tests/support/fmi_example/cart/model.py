@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from pldf.errors import ModelError
 from pldf.instance import Instance, Message
+from pldf.kernel.arrays import Floats
+from pldf.kernel.ranges import holds, whole
 from pldf.kernel.signals import (
     Enumeration,
     choice_input,
@@ -40,7 +43,7 @@ class CartRecord:
     position_m: float = real_output("Position", "m")
     speed_mps: float = real_output("Speed", SPEED_UNIT)
     acceleration_mps2: float = real_output("Acceleration, follows the force at once", "m/s2")
-    steps: int = count_output("Steps since the start")
+    steps: int = holds(whole(0, 2**60), count_output("Steps since the start"))
     moving: int = flag_output("The cart moves")
     engaged: int = choice_output("Gear in use", GEAR)
     hidden_m: float = 0.0
@@ -53,8 +56,16 @@ class CartTexts:
     log_file: str = text_parameter("File that gets a line when the run ends")
 
 
+class Past(NamedTuple):
+    """What the cart remembers."""
+
+    speed_mps: Floats
+
+
 class Cart(Instance[CartRecord]):
     """The cart."""
+
+    groups = (Past,)
 
     def __init__(self) -> None:
         super().__init__(CartRecord(), CartTexts())
