@@ -151,7 +151,7 @@ class Lines:
         if len(data) > size:
             refuse(file, f"byte {size}", f"{len(data) - size} bytes behind the end of the profile")
         end = len(data) - CHECKSUM_SIZE
-        line = _checksum_line(memoryview(data)[:end])
+        line = _checksum_line(zlib.crc32(memoryview(data)[:end]))
         if data[end:] != line:
             stated = ascii(data[end:].decode("latin-1").rstrip("\n"))
             right = line[:-1].decode()
@@ -172,12 +172,14 @@ def header(lines: list[str], file: str) -> bytes:
 
 def sealed(head: bytes, blocks: list[FloatArray]) -> bytes:
     """Return a whole file: header, blocks and the checksum over them."""
-    parts = [head]
+    parts: list[bytes | memoryview] = [head]
     for values in blocks:
-        block = np.asarray(values, "<f8").tobytes()
-        parts += [block, bytes(-len(block) % ALIGNMENT)]
-    body = b"".join(parts)
-    return body + _checksum_line(body)
+        block = np.ascontiguousarray(values, "<f8")
+        parts += [block.data.cast("B"), bytes(-block.nbytes % ALIGNMENT)]
+    checksum = 0
+    for part in parts:  # none is copied more than once: a history has many megabytes
+        checksum = zlib.crc32(part, checksum)
+    return b"".join([*parts, _checksum_line(checksum)])
 
 
 def read_block(lines: Lines, at: int, nodes: int, column: Column, iteration: int) -> FloatArray:
@@ -215,5 +217,5 @@ def refuse(file: str, where: str, reason: str) -> NoReturn:
     raise ProfileRefused(file, where, reason)
 
 
-def _checksum_line(body: bytes | memoryview) -> bytes:
-    return b"crc32 %08x\n" % zlib.crc32(body)
+def _checksum_line(checksum: int) -> bytes:
+    return b"crc32 %08x\n" % checksum

@@ -47,6 +47,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from operator import attrgetter
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -77,6 +78,7 @@ _BASE: Final = re.compile(rb"block base_mps m/s()")
 _ITERATION: Final = re.compile(rb"iteration " + NUMBER + rb" ([a-z]{1,16}) " + NUMBER + NOTE)
 _BLOCK: Final = re.compile(rb"block ([a-z][a-z0-9_]{0,39}) ([!-~]{1,16})")
 _NAMES: Final = tuple(column.name for column in COLUMNS)
+_arrays: Final = attrgetter(*_NAMES)
 
 
 def encode(profile: StoredProfile) -> bytes:
@@ -86,12 +88,11 @@ def encode(profile: StoredProfile) -> bytes:
         ProfileRefused: something in ``profile`` is out of the ranges above, e.g. a NaN speed.
     """
     file = f"profile of driver {profile.driver_id}"
-    _check_shapes(profile, file)
     lines, blocks = ["block base_mps m/s"], [profile.base_mps]
     for iteration, changed in _changes(profile):
         lines.append(_head(iteration))
         lines += [f"block {column.name} {column.unit}" for column in changed]
-        blocks += [getattr(iteration, column.name) for column in changed]
+        blocks += [_block(profile, iteration, column, file) for column in changed]
     start = Start(profile.driver_id, profile.route, profile.nodes, len(profile.iterations))
     head = header([*start.text(VERSION), f"blocks {len(blocks)}", *lines], file)
     data = sealed(head, blocks)
@@ -223,33 +224,23 @@ def _head(iteration: Iteration) -> str:
     return f"{line} {iteration.note}" if iteration.note else line
 
 
+def _block(profile: StoredProfile, iteration: Iteration, column: Column, file: str) -> FloatArray:
+    values: FloatArray = getattr(iteration, column.name)
+    if np.shape(values) != (profile.nodes,):
+        refuse(file, "", f"{column.name} has shape {np.shape(values)}, base_mps {profile.nodes}")
+    return values
+
+
 def _changes(profile: StoredProfile) -> Iterator[tuple[Iteration, list[Column]]]:
     """Yield each iteration with the columns that differ from those of the one before."""
-    before = profile.iteration(0)
+    before = _arrays(profile.iteration(0))
     for iteration in profile.iterations:
-        yield (
-            iteration,
-            [
-                column
-                for column in COLUMNS
-                if not _same(getattr(iteration, column.name), getattr(before, column.name))
-            ],
-        )
-        before = iteration
+        arrays = _arrays(iteration)
+        rows = zip(COLUMNS, arrays, before, strict=True)
+        yield iteration, [column for column, new, old in rows if not _same(new, old)]
+        before = arrays
 
 
 def _same(a: FloatArray, b: FloatArray) -> bool:
     """Tell whether the bits are the same: 0.0 is not -0.0."""
-    return a is b or np.array_equal(_bits(a), _bits(b))
-
-
-def _bits(values: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.uint64]]:
-    return np.ascontiguousarray(values, np.float64).view(np.uint64)
-
-
-def _check_shapes(profile: StoredProfile, file: str) -> None:
-    for iteration in (profile.iteration(0), *profile.iterations):
-        for name in _NAMES:
-            shape = np.shape(getattr(iteration, name))
-            if shape != (profile.nodes,):
-                refuse(file, "", f"{name} has shape {shape}, base_mps {profile.nodes}")
+    return a is b or np.asarray(a, np.float64).tobytes() == np.asarray(b, np.float64).tobytes()

@@ -36,7 +36,7 @@ class ProfileRefused(ModelError):  # noqa: N818 - it says what was done, to a pe
         return ProfileRefused(self.file, self.where, self.reason, outcome)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Iteration:
     """What was known after one drive; float64 arrays of n nodes, read-only when they were read.
 
