@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -131,6 +133,25 @@ def test_a_drive_without_interventions_keeps_what_was_learned() -> None:
     again = made.learn()
     np.testing.assert_array_equal(again.learned_mps, stored.iterations[-1].learned_mps)
     np.testing.assert_array_equal(again.drive, stored.iterations[-1].drive)
+
+
+@pytest.mark.parametrize("apply_learned", [1, 0])
+def test_what_is_still_to_be_decided_goes_with_the_profile_that_was_driven(
+    apply_learned: int,
+) -> None:
+    """A drive of the base profile starts anew; after any other, all of it is carried over."""
+    made = override(31.0, 600.0, 1200.0)
+    nodes = len(made.profile.base_mps)
+    pending = {"evidence_faster": np.full(nodes, 1.25), "pending_faster": np.ones(nodes)}
+    stored = after(made, replace(made.learn(), **pending))
+    made = function(road(2000.0), stored, apply_learned=apply_learned)
+    play_override(made, BASE)
+    again = made.learn()
+    assert (again.number, again.kind) == (2, "drive")
+    assert np.all(again.evidence_faster == 1.25 * apply_learned)
+    assert np.all(again.pending_faster == apply_learned)
+    assert bool(again.drive.any()) == bool(apply_learned)
+    np.testing.assert_array_equal(again.base_mps, made.profile.base_mps)
 
 
 @pytest.mark.parametrize("hole_s", [0.9, 1.2])
