@@ -55,6 +55,8 @@ class ProfileArrays(NamedTuple):
     bound: Floats  # node: which bound cut it last (BOUND in codes)
     limit_end_m: Floats  # node: position of the next change of the legal limit, else route end
     turn_m: Annotated[Floats, NODE]  # node: where the present or next acceleration phase ends
+    braking_mps: Floats  # node: highest speed from which braking keeps the hard caps
+    braking_by_hand_mps: Floats  # node: the same under a set speed set by hand
 
 
 class TraceArrays(NamedTuple):

@@ -6,6 +6,7 @@ from .arrays import Floats, ProfileArrays, RouteArrays, Work
 from .bounds import enforce_bounds
 from .codes import OFF, STANDBY
 from .hmi import find_turns
+from .last_check import find_braking_curves
 from .planner import find_limit_ends, plan_profile, speed_caps
 from .state import PldfState
 
@@ -26,6 +27,7 @@ def plan_base(st: PldfState, route: RouteArrays, profile: ProfileArrays, work: W
         profile.planned_mps[i] = profile.base_mps[i]
         profile.learned_mps[i] = profile.base_mps[i]
     find_limit_ends(route.limit_mps, profile.limit_end_m)
+    find_braking_curves(st, route, profile, work)
     find_turns(profile.learned_mps, profile.turn_m)
 
 

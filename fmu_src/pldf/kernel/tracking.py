@@ -12,6 +12,7 @@ from math import sqrt
 from .arrays import ProfileArrays, RouteArrays
 from .codes import ACTIVE, FAULT, GAS_OVERRIDE, INPUT_INVALID
 from .interpolation import Place, place_at, value_of
+from .last_check import checked_request
 from .lever import automatic_set_speed
 from .state import PldfState
 from .substeps import substep_count
@@ -82,4 +83,5 @@ def _wanted(st: PldfState, route: RouteArrays, profile: ProfileArrays, ahead_s: 
     preview = s_m + speed * st.control_preview_s
     first = target_speed(st, route, profile, preview)
     second = target_speed(st, route, profile, preview + 1.0)
-    return 0.5 * (second * second - first * first) + correction
+    wanted = 0.5 * (second * second - first * first) + correction
+    return checked_request(st, profile, wanted, s_m, speed)
