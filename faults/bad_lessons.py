@@ -17,7 +17,7 @@ def worst_places(caps_mps: FloatArray) -> FloatArray:
     """Return the nodes at which the hard caps (m/s, per node) have fallen within 10 m."""
     falls = caps_mps[:-10] - caps_mps[10:] > FALL_MPS
     begins = np.flatnonzero(falls[1:] & ~falls[:-1]) + 10.0
-    return begins if len(begins) else np.array([0.5 * len(caps_mps)])
+    return np.asarray(begins if len(begins) else [0.5 * len(caps_mps)])
 
 
 def bad_lesson(rng: np.random.Generator, caps_mps: FloatArray) -> tuple[FloatArray, FloatArray]:

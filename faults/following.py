@@ -49,9 +49,9 @@ class Road(NamedTuple):
     curvature_per_m: FloatArray
     limit_mps: FloatArray
 
-    def at(self, values: FloatArray, s_m: FloatArray) -> FloatArray:
+    def at(self, values: FloatArray, s_m: NDArray[np.floating]) -> FloatArray:
         """Return ``values`` of the 10 cm that hold each position."""
-        return values[np.minimum((10.0 * s_m).astype(int), len(values) - 1)]
+        return np.asarray(values[np.minimum((10.0 * s_m).astype(int), len(values) - 1)])
 
 
 @cache
@@ -87,7 +87,8 @@ def follow(seed: int, rounds: int, progress: Progress) -> Counts:
             for counts in run.drive_all():
                 _add(total, counts)
         progress(number + 1)
-    total["violations"] = total["lateral_violations"] + total["speed_violations"]
+    broken = ("lateral_violations", "speed_violations", "drives_unfinished")
+    total["violations"] = sum(total[name] for name in broken)
     return total
 
 
@@ -118,7 +119,7 @@ class Run:
         """Return what was counted in every drive."""
         learned = ProfileArrays(*(np.array(column) for column in self.base))
         if self.rng.random() < 0.3:
-            learned.learned_mps[:] = forged_profile(self.rng, self.caps)  # type: ignore[index]
+            np.asarray(learned.learned_mps)[:] = forged_profile(self.rng, self.caps)
         counts = []
         wish, tips = bad_lesson(self.rng, self.caps)
         repeats = self.rng.random() < 0.5  # the same lesson again and again is learned best
@@ -191,7 +192,7 @@ def counted_steps(where: Road, seen: Seen, lag_s: float) -> NDArray[np.bool_]:
     busy = np.flatnonzero(np.asarray(seen.driver) > 0.0)
     counted = np.zeros(len(seen.s_m), dtype=bool)
     for begin, end in zip(busy, [*busy[1:], len(counted)], strict=True):
-        first = begin + round(QUIET_S / STEP_S)
+        first = int(begin) + round(QUIET_S / STEP_S)
         while first < end and not can_be_saved(where, seen, first, lag_s):
             first += round(RETRY_S / STEP_S)
         counted[first:end] = True
@@ -225,7 +226,7 @@ EXPERIMENTS = (
     Experiment(
         name="following_bad_lessons",
         promise="In ACTIVE the car keeps 4.0 m/s2 lateral (+2 %) and its speed cap (+0.5 km/h) "
-        "wherever full braking can, whatever was learned or stored.",
+        "wherever full braking can, and it arrives, whatever was learned or stored.",
         run=follow,
         count=100,
         short=1,

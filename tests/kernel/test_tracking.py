@@ -192,3 +192,14 @@ def test_a_raised_set_speed_approaches_the_learned_speed_behind_the_sign() -> No
     assert car.made.record.manual_set_mps > 30.0
     speed = target_speed(car.made.record, car.made.route, car.made.profile, 990.0)
     assert speed == pytest.approx(sqrt(25.0**2 + 2.0 * 1.0 * 10.0))  # 1.0 m/s2 over 10 m
+
+
+def test_a_car_that_stands_where_its_profile_falls_steeply_drives_on() -> None:
+    made = function(road(300.0))
+    falling = np.sqrt(np.maximum(25.0**2 - 6.0 * np.arange(301.0), 100.0))  # -3 m/s2 down to 10 m/s
+    np.asarray(made.profile.learned_mps)[:] = falling
+    car = PointMass(made, 0.0, 0.2)
+    car.s_m = 20.0
+    car.step(lever_resume=1)
+    car.run(10.0)
+    assert car.speed_mps > 5.0

@@ -17,6 +17,10 @@ from .lever import automatic_set_speed
 from .state import PldfState
 from .substeps import substep_count
 
+# A car slower than this share of its profile does not brake because the profile does (decision):
+# else one that has been braked to a stop where the profile falls steeply would stand for ever.
+SLOW_SHARE = 0.5
+
 
 def target_speed(st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m: float) -> float:
     """Return the speed to drive at ``s_m`` in m/s: the profile, changed by a manual set speed.
@@ -83,5 +87,7 @@ def _wanted(st: PldfState, route: RouteArrays, profile: ProfileArrays, ahead_s: 
     preview = s_m + speed * st.control_preview_s
     first = target_speed(st, route, profile, preview)
     second = target_speed(st, route, profile, preview + 1.0)
-    wanted = 0.5 * (second * second - first * first) + correction
-    return checked_request(st, profile, wanted, s_m, speed)
+    slope = 0.5 * (second * second - first * first)
+    if speed < SLOW_SHARE * first:
+        slope = max(slope, 0.0)
+    return checked_request(st, profile, slope + correction, s_m, speed)
