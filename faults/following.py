@@ -18,14 +18,13 @@ from pldf.kernel.codes import LEARN_FAITHFUL
 from pldf.kernel.state import PldfState
 from pldf.roads import Route, route_arrays
 
+from faults import watched_drive
+from faults.bad_lessons import bad_lesson, forged_profile
+from faults.experiment import Counts, Experiment, Progress
+from faults.hard_roads import hard_road
+from faults.watched_drive import Lesson, Seen
 from vehicle_models import vehicle_kernel
 from vehicle_models.vehicle_state import VehicleState
-
-from . import watched_drive
-from .bad_lessons import bad_lesson, forged_profile
-from .experiment import Counts, Experiment, Progress
-from .hard_roads import hard_road
-from .watched_drive import Lesson, Seen
 
 ROADS: Final = 20
 DRIVES: Final = 10  # with a lesson each; after each a drive without hands
@@ -39,7 +38,6 @@ QUIET_S: Final = 3.0  # after activation and the driver's last input
 RETRY_S: Final = 0.1  # how often a state that cannot be saved is looked at again
 BRAKING_MPS2: Final = -3.5
 JERK_MPS3: Final = 2.5
-HARD_MPS2: Final = -2.0
 
 
 class Road(NamedTuple):
@@ -78,7 +76,7 @@ def road_of(route: Route) -> Road:
     return Road(arrays, curvature, route.speed_limit_mps[signs])
 
 
-def follow(seed: int, rounds: int, progress: Progress) -> Counts:
+def follow(rounds: int, seed: int, progress: Progress) -> Counts:
     """Do ``rounds`` runs, each with the shipped vehicle and with one that answers twice as late."""
     total: Counts = {}
     for number in range(rounds):
@@ -167,10 +165,8 @@ def judge(where: Road, seen: Seen, lag_s: float) -> Counts:
     return {
         "drives": 1,
         "drives_unfinished": float(len(s_m) == STEPS_MAX),
-        "steps": len(s_m),
         "active_steps": float(np.sum(quiet)),
         "counted_steps": float(np.sum(counted)),
-        "hard_braking_steps": float(np.sum(quiet & (np.asarray(seen.request_mps2) < HARD_MPS2))),
         "largest_lateral_mps2": float(np.max(lateral, where=counted, initial=0.0)),
         "largest_over_cap_mps": float(np.max(over, where=counted, initial=-1e3)),
         "lateral_violations": events(counted & (lateral > LATERAL_MPS2 * LATERAL_SHARE)),
