@@ -20,6 +20,7 @@ from .kernel.codes import (
     PROFILE_BASE,
     PROFILE_LOADED,
     PROFILE_NOT_PERSISTED,
+    PROFILE_NOT_WRITABLE,
     PROFILE_REFUSED,
     XY,
 )
@@ -31,7 +32,9 @@ from .profiles.store import (
     STORE_VARIABLE,
     Iteration,
     ProfileConflict,
+    ProfileRefused,
     ProfileStore,
+    ProfileUnreadable,
     StoredProfile,
 )
 from .profiles.stored_profile import COLUMN_NAMES
@@ -51,6 +54,11 @@ NO_STORE: Final = (
 
 # What a drive leaves for the next one and a file keeps of it.
 LEARNED: Final = tuple(name for name in NextArrays._fields if name in COLUMN_NAMES)
+
+KEPT_BESIDE: Final = (
+    "it is left as it is; the drive goes on with the base profile, and what it teaches is kept in "
+    "a file of its own"
+)
 
 # Bounds of every profile, and what the base profile is planned with: it must keep to them.
 BOUNDS: Final = tuple(
@@ -173,17 +181,32 @@ class DrivingFunction(Instance[PldfState]):
             if drive.learns(st) or st.apply_learned:
                 self.report("warning", NO_STORE)
             return new
+        stored, st.profile_status = None, PROFILE_REFUSED
         try:
             stored = self._store.load(st.driver_id, route, len(base))
-        except ModelError as refusal:
-            st.profile_status = PROFILE_REFUSED
+            known = stored is not None and stored.iterations
+            st.profile_status = PROFILE_LOADED if known else PROFILE_BASE
+        except ProfileUnreadable as problem:
+            self.report("warning", f"{problem}; {KEPT_BESIDE}")
+        except ProfileRefused as refusal:
             self.report("warning", str(refusal))
+        except ModelError as problem:  # it is no folder: nothing can be saved there, either
+            self.report("warning", str(problem))
             return new
+        self._require_writable(self._store)
         if stored is None:
-            st.profile_status = PROFILE_BASE
             return new
-        st.profile_status = PROFILE_LOADED if stored.iterations else PROFILE_BASE
         return stored
+
+    def _require_writable(self, store: ProfileStore) -> None:
+        """Tell before the drive, not after it, that what it teaches could not be saved."""
+        if not drive.learns(self.record):
+            return
+        try:
+            store.require_writable()
+        except ModelError as problem:
+            self.record.profile_status = PROFILE_NOT_WRITABLE
+            self.report("warning", f"what this drive teaches cannot be saved: {problem}")
 
     def _save(self, iteration: Iteration) -> None:
         if self._store is None or self.stored is None:

@@ -54,6 +54,8 @@ def test_what_was_saved_lasts_through_a_power_cut(
 ) -> None:
     """Data before the name, names of new folders and files through their folder."""
     assert calls(recorded_host, hosts, tmp_path / "a" / "b", tmp_path) == [
+        f"flock {LOCK}",  # before the drive: could it be saved?
+        f"unlink {LOCK}",
         "mkdir a",
         "fsync .",
         "mkdir a/b",

@@ -232,7 +232,11 @@ def test_a_damaged_profile_that_cannot_be_renamed_stays(native_folder: Path, dam
     assert "left in its place" in (text := slave.texts("logStatusWarning")[0]) and reason in text
     ended(slave)
     (text,) = slave.texts()
-    assert text.startswith("profile not saved: ") and "left as it was" in text and reason in text
+    assert (
+        text.startswith("profile not saved: ")
+        and "what was there is unchanged" in text
+        and reason in text
+    )
     assert sorted(damaged.iterdir()) == before
     assert (damaged / f"{NAME}.pldf").read_bytes() == b"damaged"
     slave.free()

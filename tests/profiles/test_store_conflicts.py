@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -156,3 +158,78 @@ def test_lock_on_a_file_that_its_last_holder_removed_does_not_count(
             pass
     with folder_lock(tmp_path, NOBODY_ELSE):
         pass
+
+
+needs_users = pytest.mark.skipif(
+    os.name == "nt" or os.geteuid() != 0, reason="only root can try it as other users"
+)
+SOMEBODY, SOMEBODY_ELSE = 12345, 12346
+
+
+def as_user(user: int, umask: int, action: Callable[[], object]) -> str:
+    """Do ``action`` in a process of ``user``; return its error."""
+    read, write = os.pipe()
+    if (child := os.fork()) == 0:
+        try:
+            os.setgroups([])
+            os.setresgid(500, 500, 500)
+            os.setresuid(user, user, user)
+            os.umask(umask)
+            action()
+        except BaseException as error:
+            os.write(write, str(error).encode())
+        finally:
+            os._exit(0)
+    os.close(write)
+    os.waitpid(child, 0)
+    with os.fdopen(read) as told:
+        return told.read()
+
+
+@needs_users
+@pytest.mark.parametrize("mode", [0o777, 0o1777, 0o770])
+def test_a_lock_that_another_user_left_is_no_obstacle(
+    tmp_path_factory: pytest.TempPathFactory, mode: int
+) -> None:
+    shared = Path("/tmp", f"pldf-shared-{os.getpid()}-{mode:o}")  # pytest's own folders are private
+    shared.mkdir()
+    try:
+        os.chown(shared, 0, 500)
+        shared.chmod(mode)
+
+        def leave() -> None:
+            lock = folder_lock(shared, NOBODY_ELSE)
+            lock.__enter__()
+            os._exit(0)  # as when it is killed: the file stays
+
+        as_user(SOMEBODY, 0o077, leave)
+        assert (shared / LOCK_NAME).exists()
+        new = new_profile()
+        saved = as_user(
+            SOMEBODY_ELSE,
+            0o022,
+            lambda: ProfileStore(shared, NOBODY_ELSE).append(new, drive_result(new)),
+        )
+        assert saved == ""
+        assert (shared / NAME).exists()
+    finally:
+        shutil.rmtree(shared)
+
+
+@needs_users
+def test_a_lock_that_cannot_be_opened_is_named_with_the_way_out() -> None:
+    shared = Path("/tmp", f"pldf-shared-{os.getpid()}")
+    shared.mkdir()
+    try:
+        shared.chmod(0o777)
+        (shared / LOCK_NAME).touch(0o600)  # as release 0.2.0 may have left it
+        new = new_profile()
+        told = as_user(
+            SOMEBODY,
+            0o022,
+            lambda: ProfileStore(shared, NOBODY_ELSE).append(new, drive_result(new)),
+        )
+        assert told.startswith(f"{shared / LOCK_NAME}: a lock that another user left")
+        assert "delete it when no simulation uses this folder" in told
+    finally:
+        shutil.rmtree(shared)

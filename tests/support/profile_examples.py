@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from dataclasses import replace
 
 import numpy as np
 from pldf.profiles.store import Iteration, StoredProfile
@@ -50,3 +51,9 @@ def learned_profile(iterations: int = 2, nodes: int = 11) -> StoredProfile:
 def sealed(body: bytes) -> bytes:
     """Return a file's ``body`` with its checksum."""
     return body + f"crc32 {zlib.crc32(body):08x}\n".encode()
+
+
+def two_bases() -> tuple[StoredProfile, StoredProfile]:
+    """Return two large profiles without iterations, so that either may replace the other."""
+    slow = new_profile(nodes=200_000)
+    return slow, replace(slow, base_mps=slow.base_mps + 0.5)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from pldf.files.disk import folder_lock
 from pldf.profiles.store import ProfileConflict, ProfileStore, rollback_profile, write_profile
-from profile_examples import DRIVER, ROUTE, drive_result, learned_profile, new_profile
+from profile_examples import DRIVER, ROUTE, drive_result, new_profile, two_bases
 
 
 def tell(text: str) -> None:
@@ -48,7 +48,7 @@ def rollback(path: str, times: str) -> None:
 
 def overwrite(path: str) -> None:
     """Write two profiles in turn until killed."""
-    profiles = [learned_profile(iterations, nodes=20_000) for iterations in (1, 2)]
+    profiles = two_bases()
     for number in count():
         write_profile(path, profiles[number % 2])
         if number == 1:

@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from typing import Any, Final
 
 from ..function import DrivingFunction
 from ..kernel.units import KMH_PER_MPS
-from ..profiles.store import read_profile, write_profile
+from ..profiles.store import (
+    StoredProfile,
+    continue_profile,
+    present_profile,
+    read_profile,
+    require_continued,
+    write_profile,
+)
 from ..recordings.offline import Learned, explain, learn_from
 from ..recordings.recording import read_recording
 from .shared.road import add_road, required_road
@@ -31,7 +39,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--profile-in", help="profile that the drive followed (default: the route's base profile)"
     )
-    parser.add_argument("--out", required=True, help="profile file to write (.pldf)")
+    parser.add_argument(
+        "--out",
+        required=True,
+        help="profile file to write (.pldf): a new one, or one that this lesson continues, such as "
+        "--profile-in",
+    )
+    parser.add_argument(
+        "--force",
+        action="store_true",
+        help="replace what --out holds, whatever it is; it is kept as OUT.replaced-N",
+    )
     parser.add_argument("--json", action="store_true", help="print what was learned where and why")
     add_settings(parser)
 
@@ -42,13 +60,28 @@ def run(options: argparse.Namespace) -> None:
     stored = read_profile(options.profile_in) if options.profile_in else None
     function = DrivingFunction()
     apply_settings(function.record, options.settings)
+    present = None if options.force else present_profile(options.out)
     learned = learn_from(read_recording(options.recording), route, stored, function)
-    write_profile(options.out, learned.profile)
+    _write(options, learned.profile, present)
     report = explain(learned)
     if options.json:
         print(json.dumps(report, indent=2))
     else:
         _print_summary(learned, report, options.out)
+
+
+def _write(
+    options: argparse.Namespace, profile: StoredProfile, present: StoredProfile | None
+) -> None:
+    if options.force:
+        kept = write_profile(options.out, profile, force=True)
+        if kept is not None:
+            print(f"pldf: {options.out}: what was there is kept as {kept}", file=sys.stderr)
+        return
+    require_continued(options.out, profile, present)
+    saved = continue_profile(options.out, profile)
+    if saved.warning:
+        print(f"pldf: {saved.warning}", file=sys.stderr)
 
 
 def _print_summary(learned: Learned, report: dict[str, Any], out: str) -> None:

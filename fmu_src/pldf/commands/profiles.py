@@ -21,6 +21,7 @@ from ..profiles.store import (
     STORE_VARIABLE,
     ProfileRefused,
     ProfileStore,
+    ProfileUnreadable,
     StoredProfile,
     export_format_1,
     read_profile,
@@ -135,7 +136,7 @@ def _list(options: argparse.Namespace) -> None:
     for path in store.files():
         try:
             profile = read_profile(path)
-        except ProfileRefused as refusal:
+        except (ProfileRefused, ProfileUnreadable) as refusal:
             print(f"pldf: {refusal}", file=sys.stderr)
             continue
         print(
@@ -144,6 +145,8 @@ def _list(options: argparse.Namespace) -> None:
         )
     for path in store.refused():
         print(f"pldf: {path}: put aside because it could not be used", file=sys.stderr)
+    for path in store.replaced():
+        print(f"pldf: {path}: put aside when another took its place by force", file=sys.stderr)
 
 
 def _show(options: argparse.Namespace) -> None:

@@ -31,19 +31,28 @@ _RETRY_S: Final = 0.02
 T = TypeVar("T")
 
 
+class Unusable(OSError):  # noqa: N818 - it says what the file is
+    """What is there can never be read as a file: it is no regular one, or too long."""
+
+
+class LockHeld(ModelError):  # noqa: N818 - it says what happened, to a person
+    """Somebody else has the lock of a folder."""
+
+
 @contextmanager
 def folder_lock(folder: Path, timeout_s: float) -> Iterator[None]:
     """Hold the lock of ``folder``, which must exist; wait for it up to ``timeout_s`` seconds.
 
     Raises:
-        ModelError: somebody else held it all the time.
+        LockHeld: somebody else held it all the time.
+        ModelError: somebody else left one that this user cannot open.
         OSError: the lock file cannot be created, or the file system knows no locks.
     """
     path = folder / LOCK_NAME
     deadline_s = time.monotonic() + timeout_s
     while (descriptor := _acquire(path)) is None:
         if time.monotonic() >= deadline_s:
-            raise ModelError(
+            raise LockHeld(
                 f"{path}: held by another process for {timeout_s:g} s, nothing was changed; "
                 "try again when it has finished"
             )
@@ -79,12 +88,34 @@ else:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
     def _acquire(path: Path) -> int | None:
-        descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        descriptor = _open_lock(path)
         if not _locked(descriptor):
             return None
         if not _is_at(path, descriptor):  # its last holder has removed it meanwhile
             os.close(descriptor)
             return None
+        return descriptor
+
+    def _open_lock(path: Path) -> int:
+        """Open the lock for whoever may write in its folder, whoever made it."""
+        # To read is enough for a lock on most file systems, and what a strange umask leaves. And
+        # no O_CREAT on what is there: a shared folder with a sticky bit forbids it.
+        for flags in (os.O_RDWR, os.O_RDONLY):
+            try:
+                return os.open(path, flags)
+            except FileNotFoundError:
+                return _new_lock(path)
+            except PermissionError as error:
+                problem = error
+        raise ModelError(
+            f"{path}: a lock that another user left cannot be opened ({reason(problem)}), nothing "
+            "was changed; delete it when no simulation uses this folder, or ask for write access"
+        )
+
+    def _new_lock(path: Path) -> int:
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        with suppress(OSError):  # somebody else was faster: it is theirs, and they have done it
+            os.fchmod(descriptor, stat.S_IMODE(os.stat(path.parent).st_mode) & 0o666)
         return descriptor
 
     def _release(path: Path, descriptor: int) -> None:
@@ -110,22 +141,27 @@ def _locked(descriptor: int) -> bool:
     return True
 
 
-def read_file(path: Path, size_max: int) -> bytes:
+def read_file(path: Path, size_max: int, begin: bytes = b"") -> bytes:
     """Return the content of the regular file ``path`` of at most ``size_max`` bytes.
 
+    Of a file that does not begin with ``begin`` no more than that many bytes.
+
     Raises:
-        OSError: there is no such file, or it cannot be read.
+        Unusable: it is no regular file, or longer.
+        OSError: there is no such file, or it cannot be read now.
     """
-    return _patiently(lambda: _read_file(path, size_max))
+    return _patiently(lambda: _read_file(path, size_max, begin))
 
 
-def _read_file(path: Path, size_max: int) -> bytes:
+def _read_file(path: Path, size_max: int, begin: bytes) -> bytes:
     status = os.stat(path)
     if not stat.S_ISREG(status.st_mode):  # a folder; or a pipe or device, which would never end
-        raise OSError(errno.EINVAL, "not a regular file")
+        raise Unusable(errno.EINVAL, "not a regular file")
     if status.st_size > size_max:
-        raise OSError(errno.EFBIG, f"longer than {size_max} bytes")
-    return path.read_bytes()
+        raise Unusable(errno.EFBIG, f"longer than {size_max} bytes")
+    with open(path, "rb") as file:
+        first = file.read(len(begin))
+        return first + file.read() if first == begin else first
 
 
 def rename_file(path: Path, to: Path) -> None:
@@ -134,14 +170,21 @@ def rename_file(path: Path, to: Path) -> None:
     _sync_folder(path.parent)
 
 
+def real_path(path: Path) -> Path:
+    """Return the file that ``path`` leads to through links: what a writer replaces."""
+    return Path(os.path.realpath(path))
+
+
 def free_name(pattern: Path) -> Path:
     """Return ``pattern`` with the first number for ``{}`` that is not taken; needs the lock."""
     names = (pattern.with_name(pattern.name.format(number)) for number in count(1))
     return next(name for name in names if not os.path.lexists(name))
 
 
-def replace_file(path: Path, data: bytes) -> None:
+def replace_file(path: Path, data: bytes, aside: Path | None = None) -> None:
     """Write ``data`` to the disk, then put it in the place of ``path``; needs the lock.
+
+    With ``aside`` what was in that place gets this name, once the rest can hardly fail.
 
     Raises:
         OSError: it failed; ``path`` is as it was, and nothing half-written is left.
@@ -154,7 +197,14 @@ def replace_file(path: Path, data: bytes) -> None:
             file.write(data)
             file.flush()
             _sync(file.fileno())
-        _patiently(lambda: os.replace(temporary, path))
+        if aside is not None:
+            _patiently(lambda: os.replace(path, aside))
+        try:
+            _patiently(lambda: os.replace(temporary, path))
+        except BaseException:
+            if aside is not None:
+                _patiently(lambda: os.replace(aside, path))
+            raise
     except BaseException:
         with suppress(OSError):
             temporary.unlink()

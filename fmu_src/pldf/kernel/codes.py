@@ -76,7 +76,10 @@ PROFILE_BASE: Final = 0
 PROFILE_LOADED: Final = 1
 PROFILE_REFUSED: Final = 2
 PROFILE_NOT_PERSISTED: Final = 3
-PROFILE_STATUS: Final = Enumeration("ProfileStatus", ("BASE", "LOADED", "REFUSED", "NOT_PERSISTED"))
+PROFILE_NOT_WRITABLE: Final = 4
+PROFILE_STATUS: Final = Enumeration(
+    "ProfileStatus", ("BASE", "LOADED", "REFUSED", "NOT_PERSISTED", "NOT_WRITABLE")
+)
 
 # Why the position or an input was not accepted in the last step (0: it was).
 INPUT_OK: Final = 0

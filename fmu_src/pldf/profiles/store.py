@@ -9,33 +9,46 @@ What is promised, whatever happens (two processes, kill -9, a full disk):
 - Who writes holds the lock of the folder, from reading to writing. So a file that is being written
   has a fixed name (``.tmp`` behind the name of the profile): one left behind by a killed process is
   replaced by the next save, and they cannot pile up.
-- Nothing is lost. A file that cannot be used is renamed to ``NAME.refused-N`` before its place is
-  taken. A result that comes late, because somebody else saved since its profile was loaded, goes
-  into a profile file of its own, ``NAME.conflict-N.pldf``. A rollback adds an iteration.
+- Nothing is lost. A file that was read and cannot be used is renamed to ``NAME.refused-N`` before
+  its place is taken. One that cannot be read now is left alone. A result that comes late, because
+  somebody else saved since its profile was loaded, or that meets such a file, goes into a profile
+  file of its own, ``NAME.conflict-N.pldf``. A rollback adds an iteration.
+- Whoever writes does it the same way (``saving``). A link is followed: the file that it leads to is
+  replaced, and everything else happens beside that file.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
 from ..errors import ModelError
 from ..files.disk import (
+    LockHeld,
     folder_lock,
     free_name,
-    make_folder,
-    read_file,
+    real_path,
     reason,
     rename_file,
     replace_file,
 )
-from .file_parts import FILE_MAX
-from .profile_file import decode, encode, require_match, same_history
+from .profile_file import encode, same_history
 from .profile_format_1 import encode_1
+from .saving import (
+    REFUSED,
+    SUFFIX,
+    ProfileConflict,
+    ProfileUnreadable,
+    Saved,
+    continues,
+    described,
+    put,
+    read,
+    save,
+    writing,
+)
 from .stored_profile import Iteration, ProfileRefused, StoredProfile
 
 __all__ = [
@@ -44,10 +57,14 @@ __all__ = [
     "ProfileConflict",
     "ProfileRefused",
     "ProfileStore",
+    "ProfileUnreadable",
     "Saved",
     "StoredProfile",
+    "continue_profile",
     "export_format_1",
+    "present_profile",
     "read_profile",
+    "require_continued",
     "rollback_profile",
     "write_profile",
 ]
@@ -55,28 +72,11 @@ __all__ = [
 STORE_VARIABLE: Final = "PLDF_PROFILE_STORE"
 LOCK_TIMEOUT_S: Final = 10.0
 
-_SUFFIX: Final = ".pldf"
+_ADVICE: Final = (
+    "not overwritten; choose another file, or replace it by force (it is kept aside then): "
+    "--force, in Python force=True"
+)
 _GOES_ON: Final = "the drive goes on with the base profile"
-
-
-class ProfileConflict(ModelError):  # noqa: N818 - it says what happened, to a person
-    """Somebody else saved since the profile was loaded; ``kept`` holds the late result."""
-
-    def __init__(self, path: Path, kept: Path) -> None:
-        super().__init__(
-            f"{path}: changed by another process during this drive and left as it is; "
-            f"what this drive learned is kept in {kept}"
-        )
-        self.kept = kept
-
-
-@dataclass(frozen=True)
-class Saved:
-    """What is now in the file ``path``; ``warning``: what had to be put aside for it, or empty."""
-
-    path: Path
-    profile: StoredProfile
-    warning: str = ""
 
 
 def read_profile(path: str | os.PathLike[str]) -> StoredProfile:
@@ -86,31 +86,82 @@ def read_profile(path: str | os.PathLike[str]) -> StoredProfile:
         ProfileRefused: the file cannot be read or is not a sound profile.
         ModelError: there is no such file.
     """
-    profile = _read(Path(path))
+    profile = read(Path(path))
     if profile is None:
         raise ModelError(f"{path}: no such profile file")
     return profile
 
 
 def write_profile(
-    path: str | os.PathLike[str], profile: StoredProfile, lock_timeout_s: float = LOCK_TIMEOUT_S
-) -> None:
+    path: str | os.PathLike[str],
+    profile: StoredProfile,
+    lock_timeout_s: float = LOCK_TIMEOUT_S,
+    *,
+    force: bool = False,
+) -> Path | None:
     """Put ``profile`` into the file ``path``, atomically; missing folders are made.
 
-    A sound profile that is there is replaced; anything else is left alone.
+    What is there is replaced if ``profile`` continues it: all its iterations are in ``profile``.
+    Anything else is replaced by ``force`` only, and kept aside; returned is where.
 
     Raises:
-        ModelError: the profile is not sound, something else is in its place, the folder cannot be
-            written to or is locked.
+        ModelError: the profile is not sound, it does not continue what is there, the folder cannot
+            be written to or is locked.
     """
-    target = Path(os.path.realpath(path))
-    data = encode(profile)
-    with _writing(target, lock_timeout_s):
+    target, data = real_path(Path(path)), encode(profile)
+    with writing(target, lock_timeout_s):
         try:
-            _read(target)
-        except ProfileRefused as refusal:
-            raise refusal.followed_by("not overwritten, choose another file") from None
-        replace_file(target, data)
+            require_continued(path, profile, present_profile(target))
+        except ModelError:
+            if not force:
+                raise
+            kept = free_name(target.with_name(target.name + ".replaced-{}"))
+            replace_file(target, data, aside=kept)
+            return kept
+        put(target, profile, data, lambda _: True)
+    return None
+
+
+def continue_profile(
+    path: str | os.PathLike[str], profile: StoredProfile, lock_timeout_s: float = LOCK_TIMEOUT_S
+) -> Saved:
+    """Put ``profile`` into the file ``path`` that it continues, or beside what it does not.
+
+    For what must not be lost; ``require_continued`` tells first whether it belongs there.
+
+    Raises:
+        ProfileConflict: the file was changed since, or cannot be read now; the result is kept in a
+            file of its own.
+        ModelError: the profile is not sound, the folder cannot be written to or is locked.
+    """
+    return save(Path(path), profile, lambda there: continues(profile, there), lock_timeout_s)
+
+
+def present_profile(path: str | os.PathLike[str]) -> StoredProfile | None:
+    """Return what a profile that is written to ``path`` has to continue; None: nothing is there.
+
+    Raises:
+        ModelError: it cannot be read, or is no sound profile.
+    """
+    try:
+        return read(Path(path))
+    except (ProfileRefused, ProfileUnreadable) as problem:
+        raise ModelError(f"{problem}; {_ADVICE}") from None
+
+
+def require_continued(
+    path: str | os.PathLike[str], profile: StoredProfile, present: StoredProfile | None
+) -> None:
+    """Refuse to let ``profile`` take the place of ``present`` in ``path`` and lose some of it.
+
+    Raises:
+        ModelError: ``present`` has iterations that ``profile`` has not, or is somebody else's.
+    """
+    if present is not None and not continues(profile, present):
+        raise ModelError(
+            f"{path}: holds {described(present)}, which {described(profile)} does not "
+            f"continue; {_ADVICE}"
+        )
 
 
 def rollback_profile(
@@ -120,13 +171,13 @@ def rollback_profile(
 
     Raises:
         ProfileRefused: the file is not a sound profile; it is left as it is.
-        ModelError: there is no such file or iteration, or saving fails.
+        ModelError: there is no such file or iteration, it cannot be read now, or saving fails.
     """
     read_profile(path)  # before a folder or a lock file is made for nothing
-    target = Path(os.path.realpath(path))
-    with _writing(target, lock_timeout_s):
+    target = real_path(Path(path))
+    with writing(target, lock_timeout_s):
         profile = read_profile(target).rolled_back(to)
-        replace_file(target, encode(profile))
+        put(target, profile, encode(profile), lambda there: continues(profile, there))
     return profile
 
 
@@ -140,7 +191,7 @@ def export_format_1(
     """
     target = Path(os.path.abspath(path))
     data = encode_1(profile)
-    with _writing(target, lock_timeout_s):
+    with writing(target, lock_timeout_s):
         if os.path.lexists(target):
             raise ModelError(f"{path}: it is there already; choose another file")
         replace_file(target, data)
@@ -162,20 +213,24 @@ class ProfileStore:
 
     def path(self, driver_id: int, route: str) -> Path:
         """Return where the profile of this driver on this route is or would be."""
-        return self.folder / f"driver-{driver_id:06d}_route-{route}{_SUFFIX}"
+        return self.folder / f"driver-{driver_id:06d}_route-{route}{SUFFIX}"
 
     def files(self) -> list[Path]:
         """Return all profile files by name, those of conflicts included; none of them is read."""
-        return sorted(self.folder.glob(f"*{_SUFFIX}"))
+        return sorted(self.folder.glob(f"*{SUFFIX}"))
 
     def files_of(self, driver_id: int) -> list[Path]:
         """Return the profile files of one driver, one per route, without those of conflicts."""
-        files = self.folder.glob(f"driver-{driver_id:06d}_route-*{_SUFFIX}")
+        files = self.folder.glob(f"driver-{driver_id:06d}_route-*{SUFFIX}")
         return sorted(file for file in files if ".conflict-" not in file.name)
 
     def refused(self) -> list[Path]:
         """Return the files that were put aside because they could not be used."""
-        return sorted(self.folder.glob(f"*{_SUFFIX}.refused-*"))
+        return sorted(self.folder.glob(f"*{SUFFIX}.refused-*"))
+
+    def replaced(self) -> list[Path]:
+        """Return the files that were put aside when others took their place by force."""
+        return sorted(self.folder.glob(f"*{SUFFIX}.replaced-*"))
 
     def load(self, driver_id: int, route: str, nodes: int) -> StoredProfile | None:
         """Return the profile of a driver on the route with this fingerprint and number of nodes.
@@ -184,13 +239,14 @@ class ProfileStore:
 
         Raises:
             ProfileRefused: the file cannot be used; it was renamed if that is possible.
+            ProfileUnreadable: it cannot be read now; nothing was touched.
             ModelError: the store is not a folder.
         """
         self._require_folder()
         wanted = (driver_id, route, nodes)
-        path = self.path(driver_id, route)
+        path = real_path(self.path(driver_id, route))
         try:
-            return _read(path, wanted)
+            return read(path, wanted)
         except ProfileRefused as refusal:
             profile, outcome = self._put_aside(path, wanted)
             if profile is None:
@@ -203,20 +259,35 @@ class ProfileStore:
         The base profile may have been planned anew; the history must still be the one in the file.
 
         Raises:
-            ProfileConflict: it is not; the result is kept in a file of its own.
+            ProfileConflict: it is not, or cannot be read now; the result is kept in a file of its
+                own.
             ModelError: the result is not sound, the folder cannot be written to or is locked.
         """
         extended = profile.with_iteration(iteration)
-        data = encode(extended)
-        path = self.path(profile.driver_id, profile.route)
-        with _writing(path, self.lock_timeout_s):
-            present, warning = _make_room(path, (profile.driver_id, profile.route, profile.nodes))
-            if present is not None and not same_history(present, profile):
-                kept = free_name(path.with_suffix(".conflict-{}" + _SUFFIX))
-                replace_file(kept, data)
-                raise ProfileConflict(path, kept)
-            replace_file(path, data)
-        return Saved(path, extended, warning)
+        return save(
+            self.path(profile.driver_id, profile.route),
+            extended,
+            lambda present: same_history(present, profile),
+            self.lock_timeout_s,
+        )
+
+    def require_writable(self) -> None:
+        """Try to write in the folder, or where it would be made, without leaving anything.
+
+        Raises:
+            ModelError: a profile could not be saved here.
+        """
+        self._require_folder()
+        nearest = next(p for p in (self.folder, *self.folder.parents) if p.is_dir())
+        try:
+            # The lock is made as any file is; and a lock that somebody left would be in the way.
+            with suppress(LockHeld), folder_lock(nearest, 0.0):
+                pass
+        except OSError as error:
+            raise ModelError(
+                f"{nearest}: cannot be written to ({reason(error)}); make it writable, or choose "
+                "another profile store"
+            ) from error
 
     def rollback(self, driver_id: int, route: str, to: int) -> StoredProfile:
         """As ``rollback_profile``, for the file of this driver on this route."""
@@ -233,53 +304,12 @@ class ProfileStore:
     ) -> tuple[StoredProfile | None, str]:
         """Judge a refused file again under the lock: somebody may have dealt with it meanwhile."""
         try:
-            with folder_lock(self.folder, self.lock_timeout_s):
+            with folder_lock(path.parent, self.lock_timeout_s):
                 try:
-                    return _read(path, wanted), "put aside by another process"
+                    return read(path, wanted), "put aside by another process"
                 except ProfileRefused:
-                    return None, f"kept as {_keep_aside(path).name}"
+                    kept = free_name(path.with_name(path.name + REFUSED))
+                    rename_file(path, kept)
+                    return None, f"kept as {kept.name}"
         except (OSError, ModelError) as error:
             return None, f"left in its place ({reason(error)})"
-
-
-def _read(path: Path, wanted: tuple[int, str, int] | None = None) -> StoredProfile | None:
-    """Return the profile in ``path``, None if there is no such file."""
-    try:
-        data = read_file(path, FILE_MAX)
-    except FileNotFoundError:
-        return None
-    except (OSError, MemoryError) as error:
-        raise ProfileRefused(str(path), "", f"cannot be read ({reason(error)})") from error
-    profile = decode(data, str(path))
-    if wanted is not None:
-        require_match(profile, wanted, str(path))
-    return profile
-
-
-@contextmanager
-def _writing(path: Path, lock_timeout_s: float) -> Iterator[None]:
-    """Make the folder of ``path`` and hold its lock; turn OSErrors into one line for the user."""
-    try:
-        make_folder(path.parent)
-        with folder_lock(path.parent, lock_timeout_s):
-            yield
-    except OSError as error:
-        raise ModelError(
-            f"{path}: cannot be saved ({reason(error)}), what was there is unchanged; "
-            "make room there, or choose another folder"
-        ) from error
-
-
-def _make_room(path: Path, wanted: tuple[int, str, int]) -> tuple[StoredProfile | None, str]:
-    """Return the sound profile in ``path``, or None and what was put aside; needs the lock."""
-    try:
-        return _read(path, wanted), ""
-    except ProfileRefused as refusal:
-        kept = _keep_aside(path)
-        return None, str(refusal.followed_by(f"kept as {kept.name}, a new profile took its place"))
-
-
-def _keep_aside(path: Path) -> Path:
-    kept = free_name(path.with_name(path.name + ".refused-{}"))
-    rename_file(path, kept)
-    return kept

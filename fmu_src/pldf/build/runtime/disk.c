@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LOCK_POLL_MS = 10, LOCK_POLLS = 1000, BUSY_POLL_MS = 20, BUSY_POLLS = 100, PART = 1 << 30 };
+enum { LOCK_POLL_MS = 10, BUSY_POLL_MS = 20, BUSY_POLLS = 100, PART = 1 << 30 };
 static const int64_t FILE_MAX = (int64_t)1 << 32;
 
 static bool fail(char *why, const char *reason) {
@@ -23,31 +23,45 @@ static bool is_busy(const char *path, int *polls) {
 
 static int64_t part_of(int64_t rest) { return rest < PART ? rest : PART; }
 
-static bool read_all(int file, uint8_t **bytes, int64_t *size, char *why) {
-    if ((*size = os_size(file)) < 0) return fail(why, "not a regular file");
-    if (*size > FILE_MAX || !(*bytes = malloc((size_t)*size + 1)))
-        return fail(why, "too long, or it does not fit into memory");
-    for (int64_t at = 0; at < *size;) {
-        int64_t got = os_read(file, *bytes + at, part_of(*size - at));
+static bool read_part(int file, uint8_t *bytes, int64_t size, char *why) {
+    for (int64_t at = 0; at < size;) {
+        int64_t got = os_read(file, bytes + at, part_of(size - at));
         if (got > 0) at += got;
-        else if (got == 0 || errno != EINTR) return fail(why, "it ends while it is read");
+        else if (got == 0) return fail(why, "it ends while it is read");
+        else if (errno != EINTR) return os_reason(why);
     }
     return true;
 }
 
-ReadResult disk_read(const char *path, uint8_t **bytes, int64_t *size, char *why) {
+/* A large file of something else must not take the memory before it is known to be that. */
+static ReadResult read_all(int file, const char *begin, uint8_t **bytes, int64_t *size, char *why) {
+    int64_t first = (int64_t)strlen(begin);
+    if ((*size = os_size(file)) < 0) return fail(why, "not a regular file"), READ_UNUSABLE;
+    if (*size > FILE_MAX) return fail(why, "longer than 4294967296 bytes"), READ_UNUSABLE;
+    if (first > *size) first = *size;
+    if (!(*bytes = malloc((size_t)first + 1))) return fail(why, "not enough memory"), READ_FAILED;
+    if (!read_part(file, *bytes, first, why)) return READ_FAILED;
+    if (memcmp(*bytes, begin, (size_t)first) != 0) return *size = first, READ_DONE;
+    uint8_t *all = realloc(*bytes, (size_t)*size + 1);
+    if (!all) return fail(why, "not enough memory"), READ_FAILED;
+    *bytes = all;
+    return read_part(file, all + first, *size - first, why) ? READ_DONE : READ_FAILED;
+}
+
+ReadResult disk_read(const char *path, const char *begin, uint8_t **bytes, int64_t *size, char *why) {
     int file, polls = 0;
     *bytes = NULL;
     while ((file = os_open(path, OPEN_READ)) < 0) {
         if (errno == ENOENT) return READ_ABSENT;
-        if (!is_busy(path, &polls)) return os_reason(why), READ_FAILED;
+        if (!is_busy(path, &polls))
+            return os_reason(why), os_entry(path) == FOLDER ? READ_UNUSABLE : READ_FAILED;
     }
-    bool good = read_all(file, bytes, size, why);
+    ReadResult result = read_all(file, begin, bytes, size, why);
     os_close(file);
-    if (good) return READ_DONE;
+    if (result == READ_DONE) return result;
     free(*bytes);
     *bytes = NULL;
-    return READ_FAILED;
+    return result;
 }
 
 bool disk_rename(const char *from, const char *to, char *why) {
@@ -70,11 +84,19 @@ static bool write_new(const char *path, const uint8_t *bytes, int64_t size, char
     return good;
 }
 
-bool disk_replace(const char *path, const uint8_t *bytes, int64_t size, char *why) {
+static bool swap(const char *temporary, const char *path, const char *aside, char *why) {
+    char again[REASON_SIZE];
+    if (aside && !disk_rename(path, aside, why)) return false;
+    if (disk_rename(temporary, path, why)) return true;
+    if (aside) disk_rename(aside, path, again);
+    return false;
+}
+
+bool disk_replace(const char *path, const uint8_t *bytes, int64_t size, const char *aside, char *why) {
     char temporary[PATH_SIZE + 8];
     snprintf(temporary, sizeof temporary, "%s.tmp", path);
     os_remove(temporary); /* of a killed process; opening it instead would follow a link */
-    if (write_new(temporary, bytes, size, why) && disk_rename(temporary, path, why)) return true;
+    if (write_new(temporary, bytes, size, why) && swap(temporary, path, aside, why)) return true;
     os_remove(temporary);
     return false;
 }
@@ -102,24 +124,29 @@ bool disk_make_folder(const char *path, char *why) {
     return os_entry(path) == FOLDER; /* made by another process meanwhile */
 }
 
-static bool try_lock(Lock *lock, char *why) {
-    lock->file = os_open(lock->path, OPEN_LOCK);
-    if (lock->file < 0) return os_refuses_open_files && errno == EACCES ? false : os_reason(why);
-    if (os_lock(lock->file, lock->path)) return true;
-    if (errno != EAGAIN && errno != EACCES && errno != EDEADLK) os_reason(why);
+static LockResult try_lock(Lock *lock, char *why) {
+    lock->file = os_open_lock(lock->path);
+    if (lock->file < 0 && os_refuses_open_files && errno == EACCES) return LOCK_HELD;
+    if (lock->file < 0 && errno == EACCES && os_entry(lock->path) != NO_ENTRY)
+        return fail(why, "another user left pldf-store.lock, which cannot be opened: delete it when no "
+                         "simulation uses this folder"), LOCK_FAILED;
+    if (lock->file < 0) return os_reason(why), LOCK_FAILED;
+    if (os_lock(lock->file, lock->path)) return LOCK_DONE;
+    bool held = errno == EAGAIN || errno == EACCES || errno == EDEADLK;
+    if (!held) os_reason(why);
     os_close(lock->file);
-    return false;
+    return held ? LOCK_HELD : LOCK_FAILED;
 }
 
-bool disk_lock(const char *folder, Lock *lock, char *why) {
+LockResult disk_lock(const char *folder, int patience_ms, Lock *lock, char *why) {
+    LockResult result;
     snprintf(lock->path, sizeof lock->path, "%s/pldf-store.lock", folder);
-    why[0] = 0;
-    for (int polls = 0; polls < LOCK_POLLS; polls++) {
-        if (try_lock(lock, why)) return true;
-        if (why[0]) return false;
+    while ((result = try_lock(lock, why)) == LOCK_HELD && patience_ms > 0) {
         os_wait_ms(LOCK_POLL_MS);
+        patience_ms -= LOCK_POLL_MS;
     }
-    return fail(why, "held by another process for 10 s");
+    if (result == LOCK_HELD) fail(why, "pldf-store.lock is held by another process");
+    return result;
 }
 
 void disk_unlock(Lock *lock) {

@@ -46,7 +46,10 @@ static int64_t load_profile(const Importer *importer, const State *state, Run *r
     int64_t status = find_store(importer, state, run);
     if (status != PROFILE_STATUS_BASE) return status;
     StoreResult found = store_load(importer, run->folder, &run->stored);
-    if (found == STORE_REFUSED) return PROFILE_STATUS_REFUSED;
+    if (found == STORE_NO_FOLDER) return PROFILE_STATUS_REFUSED;
+    /* Told before the drive, not after it. */
+    if (learns(state) && !store_writable(importer, run->folder)) return PROFILE_STATUS_NOT_WRITABLE;
+    if (found == STORE_REFUSED || found == STORE_UNREADABLE) return PROFILE_STATUS_REFUSED;
     return found == STORE_LOADED && run->stored.count ? PROFILE_STATUS_LOADED : PROFILE_STATUS_BASE;
 }
 

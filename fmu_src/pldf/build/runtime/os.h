@@ -8,12 +8,13 @@
 /* A store's folder leaves room for the names in it: "/driver-N_route-KEY.pldf.refused-N.tmp". */
 enum { PATH_SIZE = 4096, FOLDER_SIZE = PATH_SIZE - 96, REASON_SIZE = 160 };
 typedef enum { NO_ENTRY, FOLDER, OTHER_ENTRY } DiskEntry;
-typedef enum { OPEN_READ, OPEN_NEW, OPEN_LOCK } OpenMode;
+typedef enum { OPEN_READ, OPEN_NEW } OpenMode;
 
 extern const char os_separators[];
 extern const bool os_refuses_open_files; /* for the moment in which somebody else has them open */
 
 int os_open(const char *path, OpenMode mode); /* below 0: not possible */
+int os_open_lock(const char *path); /* made if it is not there, and open to whoever may write beside it */
 void os_close(int file);
 int64_t os_size(int file); /* below 0: not a regular file */
 int64_t os_read(int file, void *to, int64_t size);
@@ -26,6 +27,7 @@ bool os_rename(const char *from, const char *to);
 void os_remove(const char *path);
 bool os_make_folder(const char *path);
 DiskEntry os_entry(const char *path);
+void os_follow(char *path); /* PATH_SIZE bytes: to what a link leads to */
 /* Whether we have the lock of the open file, and it still is the one at `path`. If somebody else has
    it, errno is EAGAIN, EACCES or EDEADLK. */
 bool os_lock(int file, const char *path);

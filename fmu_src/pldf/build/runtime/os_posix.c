@@ -17,9 +17,25 @@ const char os_separators[] = "/";
 const bool os_refuses_open_files = false;
 
 int os_open(const char *path, OpenMode mode) {
-    static const int flags[] = {
-        [OPEN_READ] = O_RDONLY, [OPEN_NEW] = O_WRONLY | O_CREAT | O_EXCL, [OPEN_LOCK] = O_RDWR | O_CREAT};
+    static const int flags[] = {[OPEN_READ] = O_RDONLY, [OPEN_NEW] = O_WRONLY | O_CREAT | O_EXCL};
     return open(path, flags[mode] | O_CLOEXEC | O_NONBLOCK, 0666); /* a pipe must not block */
+}
+
+/* To read is enough for a lock on most file systems, and what a strange umask leaves. And no O_CREAT
+   on what is there: a shared folder with a sticky bit forbids it. */
+int os_open_lock(const char *path) {
+    char folder[PATH_SIZE + 32];
+    Status status;
+    int file = open(path, O_RDWR | O_CLOEXEC | O_NONBLOCK);
+    if (file < 0 && errno == EACCES) file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (file >= 0 || errno != ENOENT) return file;
+    file = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
+    snprintf(folder, sizeof folder, "%s", path);
+    char *end = strrchr(folder, '/');
+    if (end) end[end == folder] = 0;
+    if (file >= 0 && end && stat(folder, &status) == 0)
+        if (fchmod(file, status.st_mode & 0666) != 0) return file; /* somebody else's: they do it */
+    return file;
 }
 
 void os_close(int file) { close(file); }
@@ -68,6 +84,19 @@ DiskEntry os_entry(const char *path) {
     Status status;
     if (lstat(path, &status) != 0) return NO_ENTRY;
     return stat(path, &status) == 0 && S_ISDIR(status.st_mode) ? FOLDER : OTHER_ENTRY;
+}
+
+void os_follow(char *path) {
+    char to[PATH_SIZE];
+    for (int links = 0; links < 40; links++) {
+        ssize_t length = readlink(path, to, sizeof to - 1);
+        char *name = strrchr(path, '/');
+        if (length <= 0 || !name) return;
+        to[length] = 0;
+        size_t before = to[0] == '/' ? 0 : (size_t)(name + 1 - path);
+        if (before + (size_t)length >= FOLDER_SIZE) return;
+        memcpy(path + before, to, (size_t)length + 1);
+    }
 }
 
 /* Its last holder may have removed the file: then the lock is one of nothing. */

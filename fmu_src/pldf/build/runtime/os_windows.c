@@ -36,11 +36,15 @@ static bool narrow(DWORD length, const wchar_t *found, char *out) {
 }
 
 int os_open(const char *path, OpenMode mode) {
-    static const int flags[] = {[OPEN_READ] = _O_RDONLY,
-                                [OPEN_NEW] = _O_WRONLY | _O_CREAT | _O_EXCL,
-                                [OPEN_LOCK] = _O_RDWR | _O_CREAT};
+    static const int flags[] = {[OPEN_READ] = _O_RDONLY, [OPEN_NEW] = _O_WRONLY | _O_CREAT | _O_EXCL};
     Wide w;
     return _wopen(wide(path, w), flags[mode] | _O_BINARY | _O_NOINHERIT, _S_IREAD | _S_IWRITE);
+}
+
+/* A new file has the rights of its folder here. */
+int os_open_lock(const char *path) {
+    Wide w;
+    return _wopen(wide(path, w), _O_RDWR | _O_CREAT | _O_BINARY | _O_NOINHERIT, _S_IREAD | _S_IWRITE);
 }
 
 void os_close(int file) { _close(file); }
@@ -79,6 +83,21 @@ DiskEntry os_entry(const char *path) {
     DWORD found = GetFileAttributesW(wide(path, w));
     if (found == INVALID_FILE_ATTRIBUTES) return NO_ENTRY;
     return found & FILE_ATTRIBUTE_DIRECTORY ? FOLDER : OTHER_ENTRY;
+}
+
+void os_follow(char *path) {
+    Wide w, full;
+    DWORD found = GetFileAttributesW(wide(path, w));
+    if (found == INVALID_FILE_ATTRIBUTES || !(found & FILE_ATTRIBUTE_REPARSE_POINT)) return;
+    HANDLE file = CreateFileW(w, 0, 7, NULL, OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS, NULL);
+    if (file == INVALID_HANDLE_VALUE) return;
+    DWORD length = GetFinalPathNameByHandleW(file, full, PATH_SIZE, 0);
+    CloseHandle(file);
+    char to[PATH_SIZE];
+    /* It comes with the prefix of long paths, of which UNC\\ is another kind. */
+    if (length > 4 && length < FOLDER_SIZE && wcsncmp(full, L"\\\\?\\UNC", 7) != 0 &&
+        narrow(length - 4, full + 4, to) && strlen(to) < FOLDER_SIZE)
+        memcpy(path, to, strlen(to) + 1);
 }
 
 /* No other can be at `path`: a file that somebody has open cannot be removed. */

@@ -59,7 +59,7 @@ static bool load(const Importer *importer, const State *state, const char *kind,
                              "more than %d bytes", kind, PATH_SIZE - 1);
     if (*given) snprintf(path, sizeof path, "%s", given);
     else snprintf(path, sizeof path, "%s/%s/%lld.prepared", importer->resources, kind, number);
-    return (disk_read(path, &found->bytes, &found->size, why) == READ_DONE &&
+    return (disk_read(path, "PLDF-PREPARED ", &found->bytes, &found->size, why) == READ_DONE &&
             prepared_parse(found, kind, columns, why)) ||
            importer_tell(importer, ERROR_LEVEL, "%s: %s; %s", path, why,
                          *given ? help : "choose another number, or unpack the FMU again");

@@ -4,11 +4,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEPT_MAX = 9999 };
+enum { KEPT_MAX = 9999, LOCK_PATIENCE_MS = 10000 };
 
-static void path_of(const char *folder, const Profile *wanted, char *path) {
-    snprintf(path, PATH_SIZE, "%s/driver-%06lld_route-%s.pldf", folder, (long long)wanted->driver,
-             wanted->route);
+typedef struct { /* of a profile; of what a link leads to, if there is one in its place */
+    char path[PATH_SIZE], folder[PATH_SIZE];
+} Place;
+
+static Place place_of(const char *folder, const Profile *wanted) {
+    Place place;
+    snprintf(place.path, PATH_SIZE, "%s/driver-%06lld_route-%s.pldf", folder,
+             (long long)wanted->driver, wanted->route);
+    os_follow(place.path);
+    snprintf(place.folder, PATH_SIZE, "%s", place.path);
+    disk_parent(place.folder);
+    return place;
 }
 
 void profile_free(Profile *profile) {
@@ -19,9 +28,10 @@ void profile_free(Profile *profile) {
 /* Reads the file into `found`; REFUSED with the reason if it is not the profile that is wanted. */
 static StoreResult read_profile(const char *path, const Profile *wanted, Profile *found, char *why) {
     memset(found, 0, sizeof *found);
-    switch (disk_read(path, &found->bytes, &found->size, why)) {
+    switch (disk_read(path, "PLDF-PROFILE ", &found->bytes, &found->size, why)) {
     case READ_ABSENT: return STORE_ABSENT;
-    case READ_FAILED: return STORE_REFUSED;
+    case READ_UNUSABLE: return STORE_REFUSED;
+    case READ_FAILED: return STORE_UNREADABLE;
     case READ_DONE: break;
     }
     bool good = profile_parse(found, why);
@@ -44,39 +54,72 @@ static bool free_name(const char *stem, const char *kind, const char *end, char 
     return false;
 }
 
-static bool keep_aside(const char *path, char *kept, char *why) {
-    return free_name(path, "refused", "", kept, why) && disk_rename(path, kept, why);
+/* The folder, or the first above it that is there. */
+static void nearest_entry(const char *folder, char *nearest) {
+    snprintf(nearest, PATH_SIZE, "%s", folder);
+    while (os_entry(nearest) == NO_ENTRY)
+        if (!disk_parent(nearest)) return;
 }
 
 /* A file in the place of the folder means that nothing can ever be saved. */
 static bool can_be_folder(const Importer *importer, const char *folder) {
     char part[PATH_SIZE];
-    snprintf(part, sizeof part, "%s", folder);
-    while (os_entry(part) == NO_ENTRY)
-        if (!disk_parent(part)) return true;
-    if (os_entry(part) == FOLDER) return true;
+    nearest_entry(folder, part);
+    if (os_entry(part) != OTHER_ENTRY) return true;
     importer_tell(importer, WARNING, "%s: not a folder; choose another profile store", part);
     return false;
 }
 
-StoreResult store_load(const Importer *importer, const char *folder, Profile *profile) {
-    char path[PATH_SIZE], kept[PATH_SIZE], why[REASON_SIZE] = "", again[REASON_SIZE] = "";
-    bool aside = false;
-    Profile found;
+bool store_writable(const Importer *importer, const char *folder) {
+    char part[PATH_SIZE], why[REASON_SIZE];
     Lock lock;
-    if (!can_be_folder(importer, folder)) return STORE_REFUSED;
-    path_of(folder, profile, path);
-    StoreResult result = read_profile(path, profile, &found, why);
-    if (result == STORE_REFUSED && disk_lock(folder, &lock, again)) {
-        result = read_profile(path, profile, &found, why); /* somebody may have dealt with it */
-        aside = result == STORE_REFUSED && keep_aside(path, kept, again);
-        disk_unlock(&lock);
+    nearest_entry(folder, part);
+    /* The lock is made as any file is; and one that somebody left would be in the way. */
+    LockResult result = disk_lock(part, 0, &lock, why);
+    if (result == LOCK_DONE) disk_unlock(&lock);
+    return result != LOCK_FAILED ||
+           importer_tell(importer, WARNING, "what this drive teaches cannot be saved: %s: cannot be "
+                         "written to (%s); make it writable, or choose another profile store", part, why);
+}
+
+/* Under the lock: somebody may have dealt with it meanwhile. */
+static StoreResult put_aside(const Place *place, Profile *found, char *kept, char *why, char *again) {
+    Lock lock;
+    kept[0] = 0;
+    if (disk_lock(place->folder, LOCK_PATIENCE_MS, &lock, again) != LOCK_DONE) return STORE_REFUSED;
+    Profile wanted = *found;
+    StoreResult result = read_profile(place->path, &wanted, found, why);
+    if (result == STORE_REFUSED && !(free_name(place->path, "refused", "", kept, again) &&
+                                     disk_rename(place->path, kept, again)))
+        kept[0] = 0;
+    disk_unlock(&lock);
+    return result;
+}
+
+static void tell_not_used(const Importer *importer, StoreResult result, const char *path, const char *why,
+                          const char *kept, const char *again) {
+    if (result == STORE_UNREADABLE)
+        importer_tell(importer, WARNING, "%s: cannot be read now (%s); it is left as it is; the drive "
+                      "goes on with the base profile, and what it teaches is kept in a file of its own",
+                      path, why);
+    else if (result == STORE_REFUSED)
+        importer_tell(importer, WARNING, "%s: %s; %s%s%s; the drive goes on with the base profile", path,
+                      why, *kept ? "kept as " : "left in its place (", *kept ? kept : again,
+                      *kept ? "" : ")");
+}
+
+StoreResult store_load(const Importer *importer, const char *folder, Profile *profile) {
+    char kept[PATH_SIZE] = "", why[REASON_SIZE] = "", again[REASON_SIZE] = "";
+    Profile found;
+    if (!can_be_folder(importer, folder)) return STORE_NO_FOLDER;
+    Place place = place_of(folder, profile);
+    StoreResult result = read_profile(place.path, profile, &found, why);
+    if (result == STORE_REFUSED) {
+        found = *profile;
+        result = put_aside(&place, &found, kept, why, again);
     }
     if (result == STORE_LOADED) *profile = found;
-    if (result == STORE_REFUSED)
-        importer_tell(importer, WARNING, "%s: %s; %s%s%s; the drive goes on with the base profile", path,
-                      why, aside ? "kept as " : "left in its place (", aside ? kept : again,
-                      aside ? "" : ")");
+    tell_not_used(importer, result, place.path, why, kept, again);
     return result;
 }
 
@@ -86,49 +129,60 @@ static Level not_saved(const Importer *importer, const char *path, const char *w
     return ERROR_LEVEL;
 }
 
+/* What was learned, beside a profile that it does not continue or that cannot be read now. */
+static Level put_beside(const Importer *importer, const char *path, const Profile *new, const char *how) {
+    char kept[PATH_SIZE], stem[PATH_SIZE], why[REASON_SIZE] = "";
+    snprintf(stem, sizeof stem, "%.*s", (int)(strlen(path) - strlen(".pldf")), path);
+    if (!free_name(stem, "conflict", ".pldf", kept, why)) return not_saved(importer, path, why);
+    if (!disk_replace(kept, new->bytes, new->size, NULL, why)) return not_saved(importer, kept, why);
+    importer_tell(importer, WARNING, "%s: %s and left as it is; what was learned is kept in %s", path, how,
+                  kept);
+    return WARNING;
+}
+
+static Level put_in_place_of_bad(const Importer *importer, const char *path, const Profile *new,
+                                 const char *reason) {
+    char kept[PATH_SIZE], why[REASON_SIZE] = "";
+    if (!free_name(path, "refused", "", kept, why) ||
+        !disk_replace(path, new->bytes, new->size, kept, why))
+        return not_saved(importer, path, why);
+    importer_tell(importer, WARNING, "%s: %s; kept as %s, a new profile took its place", path, reason, kept);
+    return WARNING;
+}
+
 /* Under the lock: puts the bytes where they belong. */
 static Level put(const Importer *importer, const char *path, const Profile *ours, const Profile *new) {
-    char kept[PATH_SIZE], stem[PATH_SIZE], why[REASON_SIZE] = "", again[REASON_SIZE] = "";
+    char why[REASON_SIZE] = "", how[REASON_SIZE + 32];
     Profile present;
     StoreResult found = read_profile(path, ours, &present, why);
     bool late = found == STORE_LOADED && !profile_same_history(&present, ours);
     profile_free(&present);
-    snprintf(stem, sizeof stem, "%.*s", (int)(strlen(path) - strlen(".pldf")), path);
-    if (late && !free_name(stem, "conflict", ".pldf", kept, why)) return not_saved(importer, path, why);
-    if (found == STORE_REFUSED && !keep_aside(path, kept, again)) {
-        importer_tell(importer, ERROR_LEVEL, "profile not saved: %s: %s; it is left as it was, since it "
-                      "cannot be renamed: %s; choose another folder", path, why, again);
-        return ERROR_LEVEL;
-    }
-    const char *place = late ? kept : path;
-    if (!disk_replace(place, new->bytes, new->size, why)) return not_saved(importer, place, why);
-    if (late)
-        importer_tell(importer, WARNING, "%s: changed by another process during this drive and left as "
-                      "it is; what this drive learned is kept in %s", path, kept);
-    else if (found == STORE_REFUSED)
-        importer_tell(importer, WARNING, "%s: not a sound profile; kept as %s, a new one took its place",
-                      path, kept);
-    return late || found == STORE_REFUSED ? WARNING : INFO;
+    snprintf(how, sizeof how, "cannot be read now (%s)", why);
+    if (late) return put_beside(importer, path, new, "changed by another process meanwhile");
+    if (found == STORE_UNREADABLE) return put_beside(importer, path, new, how);
+    if (found == STORE_REFUSED) return put_in_place_of_bad(importer, path, new, why);
+    return disk_replace(path, new->bytes, new->size, NULL, why) ? INFO : not_saved(importer, path, why);
 }
 
 Level store_save(const Importer *importer, const char *folder, const Profile *profile,
                  const Lesson *lesson) {
-    char path[PATH_SIZE], why[REASON_SIZE] = "not enough memory";
+    char why[REASON_SIZE] = "not enough memory";
     Lock lock;
     Profile new = {0};
     Level level = ERROR_LEVEL;
-    path_of(folder, profile, path);
+    Place place = place_of(folder, profile);
     new.bytes = profile_extend(profile, lesson, &new.size);
-    if (!new.bytes || !profile_parse(&new, why) || !disk_make_folder(folder, why) ||
-        !disk_lock(folder, &lock, why)) { /* nothing is written that cannot be read back */
-        importer_tell(importer, ERROR_LEVEL, "profile not saved: %s: %s", path, why);
+    if (!new.bytes || !profile_parse(&new, why) || !disk_make_folder(place.folder, why) ||
+        disk_lock(place.folder, LOCK_PATIENCE_MS, &lock, why) != LOCK_DONE) {
+        /* nothing is written that cannot be read back */
+        importer_tell(importer, ERROR_LEVEL, "profile not saved: %s: %s", place.path, why);
     } else {
-        level = put(importer, path, profile, &new);
+        level = put(importer, place.path, profile, &new);
         disk_unlock(&lock);
     }
     if (level == INFO)
         importer_tell(importer, INFO, "drive %lld learned from %lld pedal interventions, saved in %s",
-                      (long long)new.count, (long long)lesson->interventions, path);
+                      (long long)new.count, (long long)lesson->interventions, place.path);
     profile_free(&new);
     return level;
 }

@@ -4,13 +4,16 @@
 #include "importer.h"
 #include "profile.h"
 
-typedef enum { STORE_ABSENT, STORE_LOADED, STORE_REFUSED } StoreResult;
+/* What is UNREADABLE may be sound, and cannot be read now: nobody touches it. */
+typedef enum { STORE_ABSENT, STORE_LOADED, STORE_REFUSED, STORE_UNREADABLE, STORE_NO_FOLDER } StoreResult;
 
-/* Fill `profile`, whose driver, route and nodes say what is wanted. A file that cannot be used is
-   renamed, and the importer told. */
+/* Fill `profile`, whose driver, route and nodes say what is wanted. A file that was read and cannot be
+   used is renamed, and the importer told. */
 StoreResult store_load(const Importer *importer, const char *folder, Profile *profile);
 /* Save `profile`, as it was loaded for this drive, with one iteration more; the level of what the
    importer was told. */
 Level store_save(const Importer *importer, const char *folder, const Profile *profile,
                  const Lesson *lesson);
+/* Tries to write in the folder, or where it would be made, without leaving anything; else tells. */
+bool store_writable(const Importer *importer, const char *folder);
 void profile_free(Profile *profile);
