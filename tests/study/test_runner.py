@@ -11,14 +11,12 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 from laboratory import files
 from pldf import cli
 from pldf.analysis.drives_table import read_drives
 from pldf.build_version import build_version
-from pldf.errors import ModelError
 from pldf.recordings.recording import read_recording
 from pldf.study.drive_row import COLUMNS
 from pldf.study.participants import Participant
@@ -180,24 +178,6 @@ def test_ctrl_c_and_a_killed_study_lose_nothing(how: signal.Signals, tmp_path: P
         drives = [(row["participant"], row["phase"]) for row in csv.DictReader(file)]
     assert drives == [(f"P{k:03d}", phase) for k in range(1, CROWD + 1) for phase in ("A2", "B1")]
     assert not (out / "parts").exists()
-
-
-class Deadly:
-    """A job that kills the process to which it is handed."""
-
-    def __init__(self, settings: Any) -> None:
-        self.settings = settings
-
-    def __reduce__(self) -> Any:
-        return os._exit, (1,)
-
-
-def test_a_dying_process_is_an_error_that_says_what_to_do(study: Study, tmp_path: Path) -> None:
-    folder = opened(study, tmp_path / "out")
-    deadly: Any = Deadly(study.settings)
-    with pytest.raises(ModelError, match="start again to go on"):
-        run_missing(folder, deadly, in_processes(2), lambda _: None)
-    assert len(folder.missing()) == COUNT
 
 
 def test_a_failing_drive_stops_the_study_with_its_name(

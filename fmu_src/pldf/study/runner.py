@@ -8,17 +8,14 @@ from __future__ import annotations
 import multiprocessing
 import sys
 from collections.abc import Callable, Generator
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
 from importlib import import_module
-from itertools import islice
 from multiprocessing import forkserver
 from typing import Any, Final
 
 from ..errors import ModelError
-from .interrupt import die_of_ctrl_c
 from .participants import Participant
+from .pool import drive_in_pool, killed_units
 from .results import StudyResults
 from .simulation import compile_all
 from .through_fmus import Watch
@@ -28,8 +25,6 @@ from .unit import Job, ParticipantResult, do_unit
 # do not like it, and Windows cannot.
 _CAN_FORK: Final = sys.platform not in ("win32", "darwin")
 _WARM: Final = "pldf.study.warm"
-# Participants handed to each process ahead of time.
-_AHEAD: Final = 3
 # How long a scheduler may take to answer.
 _ANSWER_S: Final = 10
 
@@ -84,39 +79,7 @@ def _in_pool(job: Job, participants: list[Participant], count: int) -> ResultStr
     else:
         compile_all(job.settings)  # once, for all processes to load
     context = multiprocessing.get_context("forkserver" if _CAN_FORK else "spawn")
-    pool = ProcessPoolExecutor(count, mp_context=context, initializer=_begin, initargs=(job,))
-    try:
-        waiting = iter(participants)
-        pending = {
-            pool.submit(_unit, participant) for participant in islice(waiting, _AHEAD * count)
-        }
-        while pending:
-            finished, pending = wait(pending, return_when=FIRST_COMPLETED)
-            for future in finished:
-                yield future.result()
-                pending |= {pool.submit(_unit, participant) for participant in islice(waiting, 1)}
-    except BrokenProcessPool:
-        raise ModelError(
-            "a process of the study was killed (out of memory?); the participants that were done "
-            "are kept, start again to go on"
-        ) from None
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
-
-
-_job: Job | None = None
-
-
-def _begin(job: Job) -> None:
-    """Prepare a process."""
-    global _job  # noqa: PLW0603 - the only way to hand something to a process once
-    die_of_ctrl_c()
-    _job = job
-
-
-def _unit(participant: Participant) -> ParticipantResult:
-    assert _job is not None
-    return do_unit(_job, participant)
+    return drive_in_pool(job, participants, count, context)
 
 
 def on_cluster(address: str) -> Run:
@@ -142,16 +105,19 @@ def on_cluster(address: str) -> Run:
         with client:
             # As a task, not scattered: it is made anew when the worker that holds it dies.
             shared = client.submit(_same, job, pure=False)
-            units = [
-                client.submit(do_unit, shared, participant, pure=False)
+            units = {
+                client.submit(do_unit, shared, participant, pure=False): participant.id
                 for participant in participants
-            ]
-            try:
-                for unit in distributed.as_completed(units):
+            }
+            given_up = []
+            for unit in distributed.as_completed(units):
+                try:
                     yield unit.result()
-                    unit.release()
-            except distributed.KilledWorker as problem:
-                raise ModelError(f"--scheduler {address}: {problem}") from None
+                except distributed.KilledWorker:
+                    given_up.append(units[unit])
+                unit.release()
+            if given_up:
+                raise killed_units(sorted(given_up))
 
     return run
 

@@ -6,13 +6,14 @@ or ten. This is why importing the module has an effect; nothing else imports it.
 
 from __future__ import annotations
 
-from .interrupt import die_of_ctrl_c
+from .endings import die_of_ctrl_c, die_with_parent
 
 die_of_ctrl_c()
+die_with_parent()
 
 from ..roads import open_road  # noqa: E402 - after that, since these take time
 from .participants import StudySettings  # noqa: E402
+from .pool import drive_in_pool  # noqa: E402, F401 - the forked processes begin in its module
 from .simulation import compile_all  # noqa: E402
-from .unit import do_unit  # noqa: E402, F401 - what the forked processes call
 
 compile_all(StudySettings(open_road("study"), phases=()))
