@@ -214,8 +214,8 @@ EXPERIMENTS: Final = (
         "mutated_profiles",
         "A mutated profile is refused and kept, or driven: alike to the bit in Python and C.",
         profiles,
-        count=6000,
-        short=120,
+        count=3000,
+        short=150,
     ),
     Experiment(
         "mutated_prepared_files",

@@ -93,15 +93,48 @@ def _value(body: bytes, rng: np.random.Generator) -> bytes:
 
 
 def _block(body: bytes, rng: np.random.Generator) -> bytes:
-    """Copy 64 bytes or more over others of the blocks, insert them or cut them out."""
-    start = _header_size(body)
-    count = (len(body) - start) // 64
+    """Copy a block or several over others, insert them or cut them out."""
+    start, size = _header_size(body), _stride(body)
+    count = (len(body) - start) // size
     if count < 2:
         return body
-    size = 64 * int(rng.integers(1, count))
-    at, other = (start + 64 * int(rng.integers(0, count)) for _ in range(2))
-    new = body[other : other + size] if rng.random() < 0.7 else b""
-    return body[:at] + new + body[at + (size if rng.random() < 0.7 else 0) :]
+    some = size * int(rng.integers(1, count))
+    at, other = (start + size * int(rng.integers(0, count)) for _ in range(2))
+    new = body[other : other + some] if rng.random() < 0.7 else b""
+    return body[:at] + new + body[at + (some if rng.random() < 0.7 else 0) :]
+
+
+def _named_block(body: bytes, rng: np.random.Generator) -> bytes:
+    """Insert a copy of a block of a profile with a line that names it, and count it."""
+    start, size = _header_size(body), _stride(body)
+    lines = body[:start].split(b"\n")
+    named = [number for number, line in enumerate(lines) if line.startswith(b"block ")]
+    if not named:
+        return body
+    block, other = (int(rng.integers(0, len(named))) for _ in range(2))
+    at, source = start + size * (block + 1), start + size * other
+    name = lines[named[other if rng.random() < 0.5 else int(rng.integers(0, len(named)))]]
+    lines.insert(named[block] + 1, name)
+    head = b"\n".join(lines).replace(b"blocks %d" % len(named), b"blocks %d" % (len(named) + 1), 1)
+    return head + body[start:at] + body[source : source + size] + body[at:]
+
+
+def _same_block(body: bytes, rng: np.random.Generator) -> bytes:
+    """Give a block of a profile the bytes of the one before with its name, or only zeros."""
+    start, size = _header_size(body), _stride(body)
+    names = re.findall(rb"\nblock ([^ \n]*)", body[:start])
+    pairs = [(i, j) for j in range(len(names)) for i in range(j) if names[i] == names[j]]
+    if not pairs:
+        return body
+    before, block = (start + size * index for index in pairs[rng.choice(len(pairs))])
+    new = body[before : before + size] if rng.random() < 0.7 else bytes(size)
+    return body[:block] + new + body[block + size :]
+
+
+def _stride(body: bytes) -> int:
+    """Return the distance of a profile's blocks in bytes; of other files, something possible."""
+    nodes = re.search(rb"\nnodes (\d{1,6})\n", body)
+    return max(-(-8 * int(nodes[1]) // 64) * 64, 64) if nodes else 64
 
 
 def _filled(body: bytes) -> bytes:
@@ -113,4 +146,6 @@ def _filled(body: bytes) -> bytes:
     return body[:end] + b" " * (-(end + 1) % 64) + b"\n" + body[match.end() :]
 
 
-_CHANGES: Final = (_byte, _piece, _word, _line, _value, _value, _block)
+_CHANGES: Final = (
+    _byte, _piece, _word, _line, _value, _value, _block, _named_block, _same_block,
+)  # fmt: skip

@@ -86,10 +86,12 @@ def test_what_was_learned_beside_another_drive_is_kept_beside_its_profile(
 def test_a_profile_of_release_0_2_0_is_upgraded(
     drives: Drives, learned: tuple[bytes, bytes], tmp_path: Path
 ) -> None:
-    """By the next write, as Python does it."""
-    old = encode_1(decode(learned[1], NAME))
+    """By the next write, as Python does it; a rollback is known by its note."""
+    old = encode_1(decode(learned[1], NAME).rolled_back(0))
     expected = continued(tmp_path / "python", old)
     assert expected.startswith(b"PLDF-PROFILE 2\n")
+    kinds = [iteration.kind for iteration in decode(expected, NAME).iterations]
+    assert kinds == ["drive", "rollback", "drive"]
     drives.store.mkdir(parents=True)
     (drives.store / f"{NAME}.pldf").write_bytes(old)
     drives.drive()
