@@ -10,9 +10,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Final
 from xml.parsers import expat
 
 from ..errors import ModelError
+
+# OpenDRIVE 1.8 is nine elements deep; tools put some of their own into userData.
+_DEPTH_MAX: Final = 64
 
 
 @dataclass(slots=True)
@@ -76,7 +80,7 @@ def parse_xml(data: bytes, root: str, path: Path) -> Element:
     start = _start(data, root.encode())
     skipped_lines = data.count(b"\n", 0, start)
     top = Element("", {}, 0)
-    parser = _parser(top, skipped_lines)
+    parser = _parser(top, skipped_lines, path)
     try:
         parser.Parse(data[start:], True)
     except expat.ExpatError as error:
@@ -97,12 +101,18 @@ def _start(data: bytes, root: bytes) -> int:
     return declaration if declaration >= 0 else max(data.find(b"<" + root), 0)
 
 
-def _parser(top: Element, skipped_lines: int) -> expat.XMLParserType:
+def _parser(top: Element, skipped_lines: int, path: Path) -> expat.XMLParserType:
     parser = expat.ParserCreate()
     open_elements = [top]
 
     def start(tag: str, attributes: dict[str, str]) -> None:
         line = parser.CurrentLineNumber + skipped_lines
+        if len(open_elements) > _DEPTH_MAX:  # told at once, not when the memory is full
+            outer = open_elements[-1]
+            raise ModelError(
+                f"{path}, line {line}: an element inside {_DEPTH_MAX} others, OpenDRIVE has 9;"
+                f" probably <{outer.tag[:40]}> of line {outer.line} is not closed"
+            )
         element = Element(tag.rpartition(":")[2], attributes, line)
         open_elements[-1].children.append(element)
         open_elements.append(element)
