@@ -196,3 +196,13 @@ def test_a_valley_is_as_narrow_as_the_bend_allows() -> None:
     planner.round_valleys(view(squares), view(bend), np.inf, np.inf)
     away = np.abs(np.arange(101.0) - 50.0)
     np.testing.assert_array_equal(squares, np.minimum(away * away, 400.0))
+
+
+def test_an_offset_that_reaches_below_the_limit_plans_no_speed_from_its_square():
+    """It made 20 m/s - 200 m/s to 180 m/s, and 20 m/s - 20 m/s to a division by 0."""
+    nodes = 5
+    caps, limit, curvature = np.zeros(nodes), np.full(nodes, 20.0), np.zeros(nodes)
+    for offset in (-20.0, -200.0):
+        arrays = (caps, limit, np.full(nodes, offset), curvature)
+        planner.speed_caps(*map(view, arrays), 2.5)  # type: ignore[misc]
+        assert (caps == planner.SLOWEST_CAP_MPS).all()

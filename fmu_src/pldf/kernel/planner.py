@@ -23,6 +23,9 @@ from typing import Protocol
 
 from .arrays import Floats, Work
 
+# A stored offset may reach below the limit; a cap of 0 or less is no speed (its square would be).
+SLOWEST_CAP_MPS = 1e-3
+
 
 class PlannerSettings(Protocol):
     """The bounds of a profile, as fields of a record."""
@@ -50,9 +53,11 @@ def speed_caps(
 
     ``limit``, ``offset`` (m/s) and ``curvature`` (1/m, absolute) are per cell.
     """
-    before = cell_cap(limit[0] + offset[0], curvature[0], lateral_accel_max_mps2)
+    first = max(limit[0] + offset[0], SLOWEST_CAP_MPS)
+    before = cell_cap(first, curvature[0], lateral_accel_max_mps2)
     for i in range(len(caps)):
-        here = cell_cap(limit[i] + offset[i], curvature[i], lateral_accel_max_mps2)
+        allowed = max(limit[i] + offset[i], SLOWEST_CAP_MPS)
+        here = cell_cap(allowed, curvature[i], lateral_accel_max_mps2)
         caps[i] = min(before, here)
         before = here
 

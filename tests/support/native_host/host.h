@@ -18,7 +18,7 @@
     } while (0)
 
 enum { OK = 0, WARNING = 1, ERROR = 3 }; /* as in both versions of FMI */
-enum { MANY = 128, LINE_SIZE = 4096, UNKNOWN = 4000000000u };
+enum { MANY = 128, LINE_SIZE = 4096, UNKNOWN = 4000000000u, SEED = 5 };
 typedef enum { REAL, INTEGER, ENUMERATION, BOOLEAN, TEXT } Kind;
 
 typedef struct {
@@ -86,7 +86,7 @@ int get_outputs(const Fmu *fmu, void *c, double *values);
 /* Jobs */
 void replay(const Fmu *fmu, const char *script, char **results, int count);
 void check(const char *description, const char *other, bool same_model);
-void hostile(const Fmu *fmu, long steps);
+void hostile(const Fmu *fmu, long steps, uint32_t seed);
 void attempt(const Fmu *fmu);
 void forge(const Fmu *fmu);
 void reads(const Fmu *fmu, const char *script);

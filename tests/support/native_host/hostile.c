@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-static uint32_t noise = 5; /* the same on every platform, unlike rand() */
+static uint32_t noise = SEED; /* the same on every platform, unlike rand() */
 
 uint32_t dice(uint32_t sides) {
     noise = 1664525u * noise + 1013904223u;
@@ -72,7 +72,8 @@ static void parameters(const Fmu *fmu, int rounds) {
     fmu->api->free(fmu, c);
 }
 
-void hostile(const Fmu *fmu, long steps) {
+void hostile(const Fmu *fmu, long steps, uint32_t seed) {
+    noise = seed;
     void *c = started(fmu, "hostile");
     drive(fmu, c, steps);
     CHECK(fmu->api->terminate(fmu, c) == OK);

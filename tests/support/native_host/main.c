@@ -1,7 +1,7 @@
 /* usage: native_host replay DESCRIPTION SCRIPT RESULTS [RESULTS ...]
           native_host check DESCRIPTION DESCRIPTION (of another model)
           native_host versions DESCRIPTION DESCRIPTION (of one model)
-          native_host hostile DESCRIPTION STEPS
+          native_host hostile DESCRIPTION STEPS [SEED]
           native_host reads DESCRIPTION SCRIPT
           native_host stack DESCRIPTION SCRIPT KILOBYTES
           native_host forge DESCRIPTION
@@ -14,7 +14,8 @@
 static void drive(const char *job, char **arguments, int count) {
     Fmu *fmu = fmu_open(arguments[0]);
     if (!strcmp(job, "replay")) replay(fmu, arguments[1], arguments + 2, count - 2);
-    else if (!strcmp(job, "hostile")) hostile(fmu, atol(arguments[1]));
+    else if (!strcmp(job, "hostile")) 
+        hostile(fmu, atol(arguments[1]), count > 2 ? (uint32_t)atol(arguments[2]) : SEED);
     else if (!strcmp(job, "reads")) reads(fmu, arguments[1]);
     else if (!strcmp(job, "stack")) little_stack(fmu, arguments[1], atol(arguments[2]));
     else if (!strcmp(job, "forge")) forge(fmu);
