@@ -62,6 +62,7 @@ def short_road() -> Iterator[Path]:
 
 
 def of(signals: Sequence[Signal], causality: str) -> list[Signal]:
+    """Return the numbers of this causality."""
     return [s for s in signals if s.causality == causality and s.kind != "String"]
 
 
