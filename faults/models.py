@@ -6,7 +6,7 @@ import os
 import subprocess
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -54,8 +54,8 @@ KINDS: Final = (
 
 @contextmanager
 def short_road() -> Iterator[Path]:
-    """Give the file of a short road."""
-    with tempfile.TemporaryDirectory(prefix="faults_") as folder:
+    """Give the file of a short road; a forged state may name any folder, seen from here."""
+    with tempfile.TemporaryDirectory(prefix="faults_") as folder, chdir(folder):
         path = Path(folder, "road.csv")
         path.write_text(ROAD, encoding="utf-8")
         yield path
@@ -120,7 +120,9 @@ def c_host() -> Iterator[tuple[Path, Path]]:
 def run(host: Path, job: str, *arguments: str) -> str | None:
     """Run a job of the C host; None if it has met a broken promise, or crashed."""
     kept = {k: v for k, v in os.environ.items() if not k.startswith("PLDF_")}
-    done = subprocess.run([host, job, *arguments], env=kept, capture_output=True, check=False)
+    done = subprocess.run(
+        [host, job, *arguments], env=kept, cwd=host.parent, capture_output=True, check=False
+    )
     return done.stdout.decode() if done.returncode == 0 else None
 
 

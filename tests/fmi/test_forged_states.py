@@ -33,7 +33,8 @@ MODELS: dict[str, tuple[Callable[[], Instance[Any]], dict[str, Any]]] = {
 
 
 @pytest.fixture
-def road(tmp_path: Path) -> str:
+def road(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    monkeypatch.chdir(tmp_path)  # a forged state may name any store, seen from here
     path = tmp_path / "road.csv"
     path.write_text("s_m,curvature_per_m,speed_limit_mps,x_m,y_m\n0,0,20,0,0\n40,0,20,40,0\n")
     return str(path)
