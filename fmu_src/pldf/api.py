@@ -6,6 +6,7 @@ Each function imports what it needs when it is called: who reads a route waits f
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -170,7 +171,8 @@ def run_study(
         through_fmus = study.through == "fmus"
         fmus = stack.enter_context(unpacked(fmus_to_drive().folder)) if through_fmus else None
         folder = StudyResults(study, Path(out or study.out), fmus)
-        folder.open(restart)
+        for note in folder.open(restart):
+            warnings.warn(note, stacklevel=2)
         run = in_processes(jobs or os.cpu_count() or 1)
         run_missing(folder, Job(study.settings, fmus), run, lambda _: None)
     return folder.out

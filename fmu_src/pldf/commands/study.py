@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from ..cosim.kinds import USUAL_FOLDER
-from ..study.results import DRIVES, PARTICIPANTS, StudyResults
+from ..study.own_files import DRIVES, PARTICIPANTS
+from ..study.results import StudyResults
 from ..study.runner import in_processes, on_cluster, prepare_processes, run_missing
 from ..study.study_file import ONE_DRIVER, Study, changes_of, read_study, study_path
 from ..study.toml_file import Key
@@ -91,7 +92,8 @@ def run(options: argparse.Namespace) -> None:
     with ExitStack() as stack:
         fmus = stack.enter_context(chosen_fmus(options)) if through_fmus else None
         folder = StudyResults(study, out, fmus)
-        folder.open(options.restart)
+        for note in folder.open(options.restart):
+            print(f"pldf: {note}", file=sys.stderr)
         _drive(options, folder, Job(study.settings, fmus))
     drives = len(study.participants) * len(study.settings.phases)
     print(f"{study.title}: {len(study.participants)} participants, {drives} drives")

@@ -18,8 +18,8 @@ from ..recordings.interventions import Rates
 from ..recordings.recording import Recording, read_recording
 from ..roads import fingerprint
 from ..study.drive_row import DriveRow
+from ..study.own_files import DRIVES
 from ..study.phases import Phase
-from ..study.results import DRIVES
 from ..study.study_file import Study
 from . import figures
 from .paper import save
