@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -151,3 +153,10 @@ def test_unusable_knots_are_refused(
 ) -> None:
     with pytest.raises(ModelError, match=text):
         make_route(s_m, curvature, limit)
+
+
+@pytest.mark.parametrize("axis", ["x_m", "y_m"])
+def test_a_road_where_no_car_can_be_is_refused(axis: str) -> None:
+    good = make_route([0, 9], [0, 0], [10, 10])
+    with pytest.raises(ModelError, match=rf"knot 1: {axis} = -2e\+08 is beyond 100 000 km"):
+        replace(good, **{axis: np.array([0.0, -2e8])})

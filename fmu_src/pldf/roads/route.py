@@ -20,6 +20,8 @@ LENGTH_MAX_M: Final = 1e7  # ten times across a continent; a slip of a digit mus
 LIMIT_MAX_MPS: Final = 300.0 / KMH_PER_MPS
 # Curves tighter than 1 m do not exist on roads; broken polynomials and kinks of a line do.
 CURVATURE_MAX_PER_M: Final = 1.0
+# No car can be there: its inputs would count as invalid (kernel/drive.py).
+PLACE_MAX_M: Final = 1e8
 COLUMNS: Final = ("s_m", "curvature_per_m", "speed_limit_mps", "grade", "x_m", "y_m")
 
 
@@ -100,6 +102,13 @@ def _numeric_faults(knots: dict[str, FloatArray]) -> list[tuple[int, str]]:
         _first(
             np.abs(knots["curvature_per_m"]) > CURVATURE_MAX_PER_M,
             "curvature_per_m = {curvature_per_m:g}: a curve tighter than 1 m; correct the line",
+        ),
+        *(
+            _first(
+                np.abs(knots[name]) > PLACE_MAX_M,
+                f"{name} = {{{name}:g}} is beyond 100 000 km; subtract the same from all",
+            )
+            for name in ("x_m", "y_m")
         ),
     )
     return [fault for fault in faults if fault is not None]
