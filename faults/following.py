@@ -28,8 +28,8 @@ from vehicle_models.vehicle_state import VehicleState
 
 ROADS: Final = 20
 DRIVES: Final = 10  # with a lesson each; after each a drive without hands
-STEP_S: Final = 0.01
-STEPS_MAX: Final = 60_000
+STEPS_S: Final = (0.01, 0.02, 0.05, 0.1)  # communication steps, one after the other
+TIME_MAX_S: Final = 600.0
 LATERAL_MPS2: Final = 4.0
 LATERAL_SHARE: Final = 1.02
 OVER_LIMIT_MPS: Final = 20.0 / 3.6
@@ -104,6 +104,7 @@ class Run:
         self.rng = np.random.default_rng(seed)
         self.road = road(seed % ROADS)
         self.slowness = slowness
+        self.step_s = STEPS_S[seed // ROADS % len(STEPS_S)]
         self.nodes = len(self.road.arrays.limit_mps)
         self.work = zeros(Work, self.nodes)
         self.base = zeros(ProfileArrays, self.nodes)
@@ -142,29 +143,29 @@ class Run:
         vehicle = VehicleState(start_speed_mps=float(self.base.base_mps[0]))
         vehicle.body_drive_lag_s *= self.slowness
         vehicle.body_brake_lag_s *= self.slowness
-        trace, seen = zeros(TraceArrays, self.nodes), zeros(Seen, STEPS_MAX)
+        trace, seen = zeros(TraceArrays, self.nodes), zeros(Seen, round(TIME_MAX_S / self.step_s))
         models = (pack(vehicle)[0], st)
-        steps = code["watch_drive"](models, route, (profile, trace), lesson, seen, STEP_S)
+        steps = code["watch_drive"](models, route, (profile, trace), lesson, seen, self.step_s)
         if learns:
             following = zeros(NextArrays, self.nodes)
             code["learn_drive"](st, route, profile, trace, self.work, following)
             for name in set(NextArrays._fields) & set(ProfileArrays._fields):
                 getattr(learned, name)[:] = getattr(following, name)
         rows = Seen(*(np.asarray(column)[:steps] for column in seen))
-        return judge(self.road, rows, vehicle.body_brake_lag_s)
+        return judge(self.road, rows, vehicle.body_brake_lag_s, self.step_s)
 
 
-def judge(where: Road, seen: Seen, lag_s: float) -> Counts:
+def judge(where: Road, seen: Seen, lag_s: float, step_s: float) -> Counts:
     """Count what was promised and what was broken in one drive."""
     s_m, speed = np.asarray(seen.s_m), np.asarray(seen.speed_mps)
-    counted = counted_steps(where, seen, lag_s)
+    counted = counted_steps(where, seen, lag_s, step_s)
     lateral = speed * speed * where.at(where.curvature_per_m, s_m)
     over = speed - where.at(where.limit_mps, s_m) - OVER_LIMIT_MPS
     over = np.where(np.asarray(seen.manual) > 0.0, -np.inf, over)
     quiet = np.asarray(seen.driver) == 0.0
     return {
         "drives": 1,
-        "drives_unfinished": float(len(s_m) == STEPS_MAX),
+        "drives_unfinished": float(len(s_m) == round(TIME_MAX_S / step_s)),
         "active_steps": float(np.sum(quiet)),
         "counted_steps": float(np.sum(counted)),
         "largest_lateral_mps2": float(np.max(lateral, where=counted, initial=0.0)),
@@ -179,7 +180,7 @@ def events(broken: NDArray[np.bool_]) -> float:
     return float(np.sum(broken[1:] & ~broken[:-1]) + broken[0]) if len(broken) else 0.0
 
 
-def counted_steps(where: Road, seen: Seen, lag_s: float) -> NDArray[np.bool_]:
+def counted_steps(where: Road, seen: Seen, lag_s: float, step_s: float) -> NDArray[np.bool_]:
     """Return in which steps the promise holds: ACTIVE, hands off, from a state that can be saved.
 
     A run of such steps begins 3 s after the driver's last input, or as soon after that as full
@@ -188,9 +189,9 @@ def counted_steps(where: Road, seen: Seen, lag_s: float) -> NDArray[np.bool_]:
     busy = np.flatnonzero(np.asarray(seen.driver) > 0.0)
     counted = np.zeros(len(seen.s_m), dtype=bool)
     for begin, end in zip(busy, [*busy[1:], len(counted)], strict=True):
-        first = int(begin) + round(QUIET_S / STEP_S)
+        first = int(begin) + round(QUIET_S / step_s)
         while first < end and not can_be_saved(where, seen, first, lag_s):
-            first += round(RETRY_S / STEP_S)
+            first += round(RETRY_S / step_s)
         counted[first:end] = True
     return counted
 

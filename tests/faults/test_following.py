@@ -25,25 +25,25 @@ def cruise(
 
 
 def test_a_bend_taken_too_fast_is_a_violation() -> None:
-    counts = judge(BEND, cruise(20.3), 0.2)
+    counts = judge(BEND, cruise(20.3), 0.2, STEP_S)
     assert counts["lateral_violations"] == 1.0
     assert counts["speed_violations"] == 0.0
     assert abs(counts["largest_lateral_mps2"] - 4.1209) < 1e-9
-    assert judge(BEND, cruise(20.1), 0.2)["lateral_violations"] == 0.0  # 4.04, within 2 %
+    assert judge(BEND, cruise(20.1), 0.2, STEP_S)["lateral_violations"] == 0.0  # 4.04, within 2 %
 
 
 def test_a_lower_limit_passed_too_fast_is_a_violation() -> None:
-    counts = judge(SIGN, cruise(71.0 * KMH), 0.2)
+    counts = judge(SIGN, cruise(71.0 * KMH), 0.2, STEP_S)
     assert counts["speed_violations"] == 1.0
     assert abs(counts["largest_over_cap_mps"] - 1.0 * KMH) < 1e-9
-    assert judge(SIGN, cruise(70.4 * KMH), 0.2)["speed_violations"] == 0.0
-    assert judge(SIGN, cruise(71.0 * KMH, manual=1.0), 0.2)["speed_violations"] == 0.0
+    assert judge(SIGN, cruise(70.4 * KMH), 0.2, STEP_S)["speed_violations"] == 0.0
+    assert judge(SIGN, cruise(71.0 * KMH, manual=1.0), 0.2, STEP_S)["speed_violations"] == 0.0
 
 
 def test_what_nobody_could_save_is_not_counted() -> None:
     """Hands off 1 s before a bend that is 10 m/s too fast: counted only from its end on."""
     seen = cruise(30.0, 640.0)
-    counted = counted_steps(BEND, seen, 0.2)
+    counted = counted_steps(BEND, seen, 0.2, STEP_S)
     assert not np.any(counted[seen.s_m < 880.0])
     assert np.all(counted[seen.s_m > 905.0])
 
