@@ -93,6 +93,9 @@ def test_every_module_with_a_command_is_listed() -> None:
     [
         (["rout"], "invalid choice: 'rout'"),
         ([], "the following arguments are required: COMMAND"),
+        (["drive", "--set", "learning.weight"], "write learning.weight=VALUE"),
+        (["study", "--set", "wish.offset_mps"], "write wish.offset_mps=VALUE"),
+        (["learn", "--set", "learning.weight"], "write learning.weight=VALUE"),
         (["--verbose", "route", "study"], "unrecognized arguments: --verbose"),
     ],
 )

@@ -103,7 +103,6 @@ def test_phases_set_what_is_applied_learned_and_who_drives(drive: Run) -> None:
     ("arguments", "message"),
     [
         (["--set", "wish.ofset_mps=3"], "did you mean wish.offset_mps"),
-        (["--set", "learning.weight"], "write learning.weight=VALUE"),
         (["--set", "zzz=1"], "no such parameter; write e.g. pldf.learning.weight=0.4"),
         (["--set", "route_id=0"], "write one of vehicle.route_id, driver.route_id, pldf.route_id"),
         (["--set", "driver.gas_pedal=1"], "no such parameter"),  # the driver feeds it

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from pldf import cli
 from pldf.cosim.prepared import prepared_route
-from pldf.report.figures import minutes
+from pldf.durations import minutes
 from pldf.roads import fingerprint, packed_route, read_route, route_arrays
 from pldf.route_facts import route_facts
 
@@ -163,5 +163,7 @@ def test_long_routes_are_summed_up(run: Run) -> None:
 
 
 def test_minutes_are_rounded_as_a_whole() -> None:
-    assert minutes(179.7) == "3:00 min"
-    assert minutes(65.2) == "1:05 min"
+    assert minutes(179.7) == "3:00"
+    assert minutes(65.2) == "1:05"
+    assert minutes(359_999.97, 1) == "6000:00.0"
+    assert minutes(59.94, 1) == "0:59.9"

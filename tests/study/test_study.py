@@ -192,7 +192,6 @@ def test_options_are_written_into_the_study_file(fmu_folder: Path, tmp_path: Pat
     [
         ("wish.ofset_mps=1", "--set wish.ofset_mps: not in a study file; did you mean wish.offset"),
         ("kind=1", "--set kind: not in a study file"),
-        ("wish.offset_mps", "--set wish.offset_mps: write wish.offset_mps=VALUE"),
         ("wish.offset_mps=x", "wish.offset_mps = x: it must be a number"),
         ("wish.offset_mps=99", "driver.wish.offset_mps: 99.0 must be a number from -20 to 30"),
     ],

@@ -12,6 +12,7 @@ import numpy as np
 from ..cosim.master import Drive, drive
 from ..cosim.road_values import road_values
 from ..cosim.values import Value
+from ..durations import minutes
 from ..errors import ModelError
 from ..kernel.codes import LEARN
 from ..kernel.units import KMH_PER_MPS
@@ -151,7 +152,7 @@ def _plot(path: Path, done: Drive, name: str) -> None:
 def _print_rates(done: Drive) -> None:
     time_s = float(done.recording["time_s"][-1])
     rates = done.outputs
-    print(f"time       {int(time_s) // 60}:{time_s % 60:04.1f} min, {done.ending}")
+    print(f"time       {minutes(time_s, 1)} min, {done.ending}")
     print(
         f"rates      pedal {rates['rate.pedal']:.1%}, set speed {rates['rate.set_speed']:.1%}, "
         f"combined {rates['rate.combined']:.1%}"

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from ..cosim.prepared import SUFFIX, write_prepared_route
+from ..durations import minutes
 from ..errors import ModelError
 from ..kernel.units import KMH_PER_MPS
 from ..roads import fingerprint, write_route_csv
@@ -63,7 +64,7 @@ def _summary(facts: RouteFacts) -> Iterator[str]:
     shown = [f"{c.start_m:.0f} m: {_kmh(c.speed_mps)}, R {c.radius_m:.0f} m" for c in facts.curves]
     if shown:
         yield from _listed("", shown)
-    yield (f"base profile {int(time_s) // 60}:{time_s % 60:04.1f} min, mean {mean:.1f} km/h")
+    yield f"base profile {minutes(time_s, 1)} min, mean {mean:.1f} km/h"
     yield f"fingerprint  {fingerprint(route)}"
 
 

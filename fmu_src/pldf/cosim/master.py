@@ -20,6 +20,7 @@ import numpy as np
 
 from ..errors import ModelError
 from ..recordings.recording import COLUMNS, Recording
+from .ctrl_c import noted_ctrl_c
 from .drive_limits import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS, STEP_S
 from .fmu import BufferElement, Fmu, Slave, unpack
 from .kinds import PARTS
@@ -151,12 +152,18 @@ def drive(
 
     Raises:
         ModelError: an FMU refused a value or a call.
+        KeyboardInterrupt: Ctrl-C, between two steps.
     """
     values = readable_values(fmus, values)
     slaves: dict[str, Slave] = {}
-    with _silenced(slaves):
+    with _silenced(slaves), noted_ctrl_c() as raise_noted:
+
+        def report(s_m: float) -> None:
+            raise_noted()
+            progress(s_m)
+
         try:
-            return _drive(fmus, slaves, values, length_m, step_s, progress)
+            return _drive(fmus, slaves, values, length_m, step_s, report)
         finally:
             for slave in slaves.values():
                 slave.free()

@@ -13,6 +13,7 @@ from rich.table import Table
 
 from ..analysis.drives_table import read_drives
 from ..analysis.published import DRIVERS, PUBLISHED
+from ..durations import minutes
 from ..profiles.store import ProfileStore, StoredProfile
 from ..recordings.interventions import Rates
 from ..recordings.recording import Recording, read_recording
@@ -72,12 +73,11 @@ def table_of(study: Study, out: Path) -> Table:
         table.add_column(heading, justify="right")
     for row, following in zip(rows, [*rows[1:], None], strict=True):
         phase = phases[row.phase]
-        minutes, seconds = divmod(round(row.duration_s), 60)
         table.add_row(
             phase.name,
             "learned" if phase.apply_learned else "base",
             "yes" if phase.learn else "no",
-            f"{minutes}:{seconds:02d}",
+            minutes(row.duration_s),
             f"{row.interventions:.0f}",
             *_percent(_rates(row)),
             end_section=following is None or following.system != row.system,

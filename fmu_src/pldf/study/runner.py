@@ -100,8 +100,9 @@ def on_cluster(address: str) -> Run:
     def run(job: Job, participants: list[Participant]) -> ResultStream:
         try:
             client = distributed.Client(address, timeout=_ANSWER_S)
-        except (OSError, ValueError) as error:
-            raise ModelError(f"--scheduler {address}: {error}") from None
+        except (OSError, ValueError, TypeError, RuntimeError) as error:
+            # The last two: without a certificate, or without TLS where dask's settings ask for it.
+            raise ModelError(f"--scheduler {address}: {error}{_about_tls(address)}") from None
         with client:
             # As a task, not scattered: it is made anew when the worker that holds it dies.
             shared = client.submit(_same, job, pure=False)
@@ -120,6 +121,12 @@ def on_cluster(address: str) -> Run:
                 raise killed_units(sorted(given_up))
 
     return run
+
+
+def _about_tls(address: str) -> str:
+    if not address.startswith("tls:"):
+        return ""
+    return '; the certificates stand in dask\'s settings, see docs/study.md, "A cluster"'
 
 
 def _same(job: Job) -> Job:

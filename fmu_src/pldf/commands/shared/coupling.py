@@ -18,7 +18,7 @@ from ...cosim.settable import Chosen
 from ...cosim.values import FmuMessage
 from ...errors import ModelError
 from .road import Parser, add_road
-from .settings import split_settings
+from .settings import setting, split_settings
 
 NATIVE_IF_GOOD: Final = "native, if they are there for this platform and up to date"
 
@@ -38,7 +38,8 @@ def add_coupling(parser: Parser) -> None:
         help="communication step in seconds (default: 0.01)",
     )  # fmt: skip
     parser.add_argument(
-        "--set", dest="settings", metavar="FMU.VARIABLE=VALUE", action="append", default=[],
+        "--set", dest="settings", type=setting, metavar="FMU.VARIABLE=VALUE", action="append",
+        default=[],
         help="set a parameter, e.g. driver.wish.offset_mps=2 or pldf.learning.weight=0.4; FMU is "
         "pldf, vehicle or driver and may be left out where the name is clear (repeatable)",
     )  # fmt: skip

@@ -14,6 +14,7 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--set",
         dest="settings",
+        type=setting,
         metavar="NAME=VALUE",
         action="append",
         default=[],
@@ -21,14 +22,16 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def setting(text: str) -> str:
+    """Return a ``NAME=VALUE`` as it is; anything else is wrong usage."""
+    if "=" not in text:
+        raise argparse.ArgumentTypeError(f"{text}: write {text}=VALUE")
+    return text
+
+
 def split_settings(settings: list[str]) -> dict[str, str]:
-    """Return values by name from ``NAME=VALUE`` texts; ModelError if one is no such text."""
-    given = {}
-    for setting in settings:
-        name, equals, given[name] = setting.partition("=")
-        if not equals:
-            raise ModelError(f"--set {setting}: write {name}=VALUE")
-    return given
+    """Return values by name from ``NAME=VALUE`` texts."""
+    return dict(text.split("=", 1) for text in settings)
 
 
 def apply_settings(record: Any, settings: list[str]) -> None:

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from ...durations import minutes
 from ...kernel.units import KMH_PER_MPS
 from ...route_facts import BINDING_MPS, RouteFacts
 from .. import palette
@@ -38,16 +39,10 @@ def route(facts: RouteFacts) -> Scene:
     return Scene(tuple(panels))
 
 
-def minutes(time_s: float) -> str:
-    """Return ``3:05 min``."""
-    whole = round(time_s)
-    return f"{whole // 60}:{whole % 60:02d} min"
-
-
 def _headline(facts: RouteFacts) -> str:
     return (
         f"{facts.route.name}: {facts.route.length_m * KM:.2f} km, base profile "
-        f"{minutes(facts.driving_time_s)}, binding curves: {len(facts.curves)}"
+        f"{minutes(facts.driving_time_s)} min, binding curves: {len(facts.curves)}"
     )
 
 
