@@ -45,7 +45,7 @@ def profiles(count: int, seed: int, progress: Progress) -> Counts:
     """
     rng = np.random.default_rng(seed)
     found: Counter[str] = Counter(violations=0)
-    with _folder() as place:
+    with temporary_folder() as place:
         host = Host(built.folder("native") / "AdaptivePLDF.fmu")
         route = _road(place)
         (place / "road.prepared").write_bytes(prepared_route(route))
@@ -62,7 +62,7 @@ def profiles(count: int, seed: int, progress: Progress) -> Counts:
 
 
 @contextmanager
-def _folder() -> Iterator[Path]:
+def temporary_folder() -> Iterator[Path]:
     """Give a temporary folder, in memory where that is possible: what is saved is flushed."""
     memory = Path("/dev/shm")
     with tempfile.TemporaryDirectory(
@@ -171,7 +171,7 @@ def prepared_files(count: int, seed: int, progress: Progress) -> Counts:
     """Give mutated prepared roads and scripts to the native FMUs, which alone read them."""
     rng = np.random.default_rng(seed)
     found: Counter[str] = Counter(violations=0)
-    with _folder() as folder:
+    with temporary_folder() as folder:
         path = folder / "mutated.prepared"
         models = {
             kind: (Host(built.folder("native") / f"{model}.fmu"), good)

@@ -88,7 +88,12 @@ else:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
     def _acquire(path: Path) -> int | None:
-        descriptor = _open_lock(path)
+        try:
+            descriptor = _open_lock(path)
+        except PermissionError:
+            if os.path.lexists(path):  # somebody else's is there since we looked
+                return None
+            raise
         if not _locked(descriptor):
             return None
         if not _is_at(path, descriptor):  # its last holder has removed it meanwhile
@@ -114,8 +119,9 @@ else:
 
     def _new_lock(path: Path) -> int:
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        # It holds nothing that could be read; its group need not be that of the folder.
         with suppress(OSError):  # somebody else was faster: it is theirs, and they have done it
-            os.fchmod(descriptor, stat.S_IMODE(os.stat(path.parent).st_mode) & 0o666)
+            os.fchmod(descriptor, 0o644 | os.stat(path.parent).st_mode & 0o022)
         return descriptor
 
     def _release(path: Path, descriptor: int) -> None:
@@ -154,14 +160,19 @@ def read_file(path: Path, size_max: int, begin: bytes = b"") -> bytes:
 
 
 def _read_file(path: Path, size_max: int, begin: bytes) -> bytes:
-    status = os.stat(path)
-    if not stat.S_ISREG(status.st_mode):  # a folder; or a pipe or device, which would never end
+    if not stat.S_ISREG(os.stat(path).st_mode):  # a folder; or a pipe, which would never end
         raise Unusable(errno.EINVAL, "not a regular file")
-    if status.st_size > size_max:
-        raise Unusable(errno.EFBIG, f"longer than {size_max} bytes")
     with open(path, "rb") as file:
-        first = file.read(len(begin))
-        return first + file.read() if first == begin else first
+        size = os.fstat(file.fileno()).st_size  # another file may have taken the place
+        if size > size_max:
+            raise Unusable(errno.EFBIG, f"longer than {size_max} bytes")
+        data = file.read(len(begin))
+        if data != begin[:size]:
+            return data
+        data += file.read()
+    if len(data) < size:
+        raise OSError(errno.EIO, "it ends while it is read")
+    return data
 
 
 def rename_file(path: Path, to: Path) -> None:
@@ -175,9 +186,9 @@ def real_path(path: Path) -> Path:
     return Path(os.path.realpath(path))
 
 
-def free_name(pattern: Path) -> Path:
-    """Return ``pattern`` with the first number for ``{}`` that is not taken; needs the lock."""
-    names = (pattern.with_name(pattern.name.format(number)) for number in count(1))
+def free_name(path: Path, kind: str, end: str = "") -> Path:
+    """Return ``path.KIND-N`` and ``end`` with the first N that is not taken; needs the lock."""
+    names = (path.with_name(f"{path.name}.{kind}-{number}{end}") for number in count(1))
     return next(name for name in names if not os.path.lexists(name))
 
 
@@ -188,6 +199,7 @@ def replace_file(path: Path, data: bytes, aside: Path | None = None) -> None:
 
     Raises:
         OSError: it failed; ``path`` is as it was, and nothing half-written is left.
+        ModelError: as OSError, but what was there has the name ``aside`` now.
     """
     temporary = path.with_name(path.name + ".tmp")
     with suppress(FileNotFoundError):
@@ -197,19 +209,30 @@ def replace_file(path: Path, data: bytes, aside: Path | None = None) -> None:
             file.write(data)
             file.flush()
             _sync(file.fileno())
-        if aside is not None:
-            _patiently(lambda: os.replace(path, aside))
-        try:
-            _patiently(lambda: os.replace(temporary, path))
-        except BaseException:
-            if aside is not None:
-                _patiently(lambda: os.replace(aside, path))
-            raise
+        _swap(temporary, path, aside)
     except BaseException:
         with suppress(OSError):
             temporary.unlink()
         raise
     _sync_folder(path.parent)
+
+
+def _swap(temporary: Path, path: Path, aside: Path | None) -> None:
+    """Put ``temporary`` in the place of ``path``, which gets its name back if that fails."""
+    if aside is not None:
+        _patiently(lambda: os.replace(path, aside))
+    try:
+        _patiently(lambda: os.replace(temporary, path))
+    except OSError as error:
+        if aside is None:
+            raise
+        try:
+            _patiently(lambda: os.replace(aside, path))
+        except OSError:
+            raise ModelError(
+                f"{path}: cannot be saved ({reason(error)}); what was there is now {aside}"
+            ) from error
+        raise
 
 
 def make_folder(folder: Path) -> None:

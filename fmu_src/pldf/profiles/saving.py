@@ -28,7 +28,7 @@ from .profile_file import decode, encode, require_match, same_history
 from .stored_profile import ProfileRefused, StoredProfile
 
 SUFFIX: Final = ".pldf"
-REFUSED: Final = ".refused-{}"
+REFUSED: Final = "refused"
 
 
 class ProfileConflict(ModelError):  # noqa: N818 - it says what happened, to a person
@@ -59,14 +59,13 @@ class Saved:
 def read(path: Path, wanted: tuple[int, str, int] | None = None) -> StoredProfile | None:
     """Return the profile in ``path``, None if there is no such file."""
     try:
-        data = read_file(path, FILE_MAX, MAGIC)
+        profile = decode(read_file(path, FILE_MAX, MAGIC), str(path))
     except FileNotFoundError:
         return None
     except Unusable as error:
         raise ProfileRefused(str(path), "", f"cannot be read ({reason(error)})") from error
     except (OSError, MemoryError) as error:
         raise ProfileUnreadable(path, error) from error
-    profile = decode(data, str(path))
     if wanted is not None:
         require_match(profile, wanted, str(path))
     return profile
@@ -81,9 +80,9 @@ def save(
         ProfileConflict: it does not, or that cannot be read now; it is kept in a file of its own.
         ModelError: it is not sound, the folder cannot be written to or is locked.
     """
-    target, data = real_path(path), encode(profile)
+    target = real_path(path)
     with writing(target, timeout_s):
-        return put(target, profile, data, follows)
+        return put(target, profile, encode(profile), follows)
 
 
 def put(
@@ -99,7 +98,7 @@ def put(
     except ProfileUnreadable as problem:
         raise _kept_beside(path, data, problem.why) from None
     except ProfileRefused as refusal:
-        kept = free_name(path.with_name(path.name + REFUSED))
+        kept = free_name(path, REFUSED)
         replace_file(path, data, aside=kept)
         outcome = f"kept as {kept.name}, a new profile took its place"
         return Saved(path, profile, str(refusal.followed_by(outcome)))
@@ -110,7 +109,7 @@ def put(
 
 
 def _kept_beside(path: Path, data: bytes, why: str) -> ProfileConflict:
-    kept = free_name(path.with_suffix(".conflict-{}" + SUFFIX))
+    kept = free_name(path.with_name(path.name.removesuffix(SUFFIX)), "conflict", SUFFIX)
     replace_file(kept, data)
     return ProfileConflict(path, kept, why)
 
@@ -134,12 +133,12 @@ def described(profile: StoredProfile) -> str:
 
 @contextmanager
 def writing(path: Path, lock_timeout_s: float) -> Iterator[None]:
-    """Make the folder of ``path`` and hold its lock; turn OSErrors into one line for the user."""
+    """Make the folder of ``path`` and hold its lock; say what fails in one line for the user."""
     try:
         make_folder(path.parent)
         with folder_lock(path.parent, lock_timeout_s):
             yield
-    except OSError as error:
+    except (OSError, MemoryError) as error:
         raise ModelError(
             f"{path}: cannot be saved ({reason(error)}), what was there is unchanged; "
             "make room there, or choose another folder"

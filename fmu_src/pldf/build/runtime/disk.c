@@ -145,7 +145,7 @@ LockResult disk_lock(const char *folder, int patience_ms, Lock *lock, char *why)
         os_wait_ms(LOCK_POLL_MS);
         patience_ms -= LOCK_POLL_MS;
     }
-    if (result == LOCK_HELD) fail(why, "pldf-store.lock is held by another process");
+    if (result == LOCK_HELD) fail(why, "pldf-store.lock is held by another process; nothing was changed");
     return result;
 }
 

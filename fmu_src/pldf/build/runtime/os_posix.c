@@ -21,20 +21,29 @@ int os_open(const char *path, OpenMode mode) {
     return open(path, flags[mode] | O_CLOEXEC | O_NONBLOCK, 0666); /* a pipe must not block */
 }
 
-/* To read is enough for a lock on most file systems, and what a strange umask leaves. And no O_CREAT
-   on what is there: a shared folder with a sticky bit forbids it. */
-int os_open_lock(const char *path) {
+/* A lock holds nothing that could be read; its group need not be that of the folder. */
+static void share_lock(int file, const char *path) {
     char folder[PATH_SIZE + 32];
     Status status;
-    int file = open(path, O_RDWR | O_CLOEXEC | O_NONBLOCK);
-    if (file < 0 && errno == EACCES) file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (file >= 0 || errno != ENOENT) return file;
-    file = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
     snprintf(folder, sizeof folder, "%s", path);
     char *end = strrchr(folder, '/');
     if (end) end[end == folder] = 0;
-    if (file >= 0 && end && stat(folder, &status) == 0)
-        if (fchmod(file, status.st_mode & 0666) != 0) return file; /* somebody else's: they do it */
+    if (!end || stat(folder, &status) != 0) return;
+    if (fchmod(file, 0644 | (status.st_mode & 0022)) != 0) return; /* somebody else's: they do it */
+}
+
+/* To read is enough for a lock on most file systems, and what a strange umask leaves. And no O_CREAT
+   on what is there: a shared folder with a sticky bit forbids it. */
+int os_open_lock(const char *path) {
+    int file = -1;
+    for (int race = 0; race < 3; race++) { /* somebody else's may come between the calls */
+        file = open(path, O_RDWR | O_CLOEXEC | O_NONBLOCK);
+        if (file < 0 && errno == EACCES) file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+        if (file >= 0 || errno != ENOENT) return file;
+        file = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
+        if (file >= 0) share_lock(file, path);
+        if (file >= 0 || errno != EACCES) return file;
+    }
     return file;
 }
 

@@ -77,9 +77,10 @@ bool store_writable(const Importer *importer, const char *folder) {
     /* The lock is made as any file is; and one that somebody left would be in the way. */
     LockResult result = disk_lock(part, 0, &lock, why);
     if (result == LOCK_DONE) disk_unlock(&lock);
-    return result != LOCK_FAILED ||
-           importer_tell(importer, WARNING, "what this drive teaches cannot be saved: %s: cannot be "
-                         "written to (%s); make it writable, or choose another profile store", part, why);
+    if (result == LOCK_FAILED)
+        importer_tell(importer, WARNING, "what this drive teaches cannot be saved: %s: cannot be written "
+                      "to (%s); make it writable, or choose another profile store", part, why);
+    return result != LOCK_FAILED;
 }
 
 /* Under the lock: somebody may have dealt with it meanwhile. */
@@ -132,7 +133,9 @@ static Level not_saved(const Importer *importer, const char *path, const char *w
 /* What was learned, beside a profile that it does not continue or that cannot be read now. */
 static Level put_beside(const Importer *importer, const char *path, const Profile *new, const char *how) {
     char kept[PATH_SIZE], stem[PATH_SIZE], why[REASON_SIZE] = "";
-    snprintf(stem, sizeof stem, "%.*s", (int)(strlen(path) - strlen(".pldf")), path);
+    size_t length = strlen(path), end = strlen(".pldf"); /* which a link's file need not have */
+    bool named = length > end && strcmp(path + length - end, ".pldf") == 0;
+    snprintf(stem, sizeof stem, "%.*s", (int)(named ? length - end : length), path);
     if (!free_name(stem, "conflict", ".pldf", kept, why)) return not_saved(importer, path, why);
     if (!disk_replace(kept, new->bytes, new->size, NULL, why)) return not_saved(importer, kept, why);
     importer_tell(importer, WARNING, "%s: %s and left as it is; what was learned is kept in %s", path, how,
@@ -143,9 +146,13 @@ static Level put_beside(const Importer *importer, const char *path, const Profil
 static Level put_in_place_of_bad(const Importer *importer, const char *path, const Profile *new,
                                  const char *reason) {
     char kept[PATH_SIZE], why[REASON_SIZE] = "";
-    if (!free_name(path, "refused", "", kept, why) ||
-        !disk_replace(path, new->bytes, new->size, kept, why))
-        return not_saved(importer, path, why);
+    if (!free_name(path, "refused", "", kept, why)) return not_saved(importer, path, why);
+    if (!disk_replace(path, new->bytes, new->size, kept, why)) {
+        if (os_entry(kept) == NO_ENTRY) return not_saved(importer, path, why);
+        importer_tell(importer, ERROR_LEVEL, "profile not saved: %s: %s; what was there is now %s", path,
+                      why, kept);
+        return ERROR_LEVEL;
+    }
     importer_tell(importer, WARNING, "%s: %s; kept as %s, a new profile took its place", path, reason, kept);
     return WARNING;
 }
