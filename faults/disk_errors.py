@@ -176,6 +176,7 @@ def _judged_native(store: Path, present: bytes, lost: bool) -> Counts:
         or (not damaged and lost and files.get(NAME) != present)
     )
     return {
+        "rounds": 1,
         "saved": not lost and len(profiles) == 1,
         "kept_beside": not lost and len(profiles) > 1,
         "refused": lost,

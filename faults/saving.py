@@ -44,15 +44,16 @@ def kills_in_python(count: int, seed: int, progress: Progress) -> Counts:
         possible = encode(old), encode(new)
         for number in range(count):
             path.write_bytes(possible[0])
-            _killed(lambda: store.append(old, new.iterations[-1]), rng.uniform(0, KILL_AFTER_MAX_S))
+            after_s = rng.uniform(0, KILL_AFTER_MAX_S)
+            found["kills"] += _killed(lambda: store.append(old, new.iterations[-1]), after_s)
             found.update(_after_kill(path, possible))
             progress(number + 1)
         store.append(read_profile(path), drive_result(read_profile(path)))  # nothing is in its way
     return dict(found)
 
 
-def _killed(action: Callable[[], object], after_s: float) -> None:
-    """Do ``action`` in a process of its own, killed after this time unless it has ended."""
+def _killed(action: Callable[[], object], after_s: float) -> bool:
+    """Do ``action`` in a process of its own; return whether it was killed before its end."""
     child = os.fork()
     if child == 0:
         try:
@@ -61,7 +62,8 @@ def _killed(action: Callable[[], object], after_s: float) -> None:
             os._exit(0)
     time.sleep(after_s)
     os.kill(child, signal.SIGKILL)
-    os.waitpid(child, 0)
+    _, status = os.waitpid(child, 0)
+    return os.WIFSIGNALED(status)
 
 
 def _after_kill(path: Path, possible: tuple[bytes, bytes]) -> Counts:
@@ -69,7 +71,7 @@ def _after_kill(path: Path, possible: tuple[bytes, bytes]) -> Counts:
     others = {other.name for other in path.parent.iterdir()} - {path.name}
     allowed = {f"{path.name}.tmp", "pldf-store.lock", "pldf-store.trial"}
     return {
-        "kills": 1,
+        "rounds": 1,
         "saved": data == possible[1],
         "left_over_files": len(others),
         "violations": data not in possible or not others <= allowed,
@@ -84,22 +86,28 @@ def kills_of_native_fmus(count: int, seed: int, progress: Progress) -> Counts:
         for version in (2, 3):
             saves, store = native_saves(folder, version)
             old = first_drive(saves, store)
-            begin_s = time.monotonic()
-            found["violations"] += LOST in saves.drive(store)
-            lasted_s = time.monotonic() - begin_s
+            lasted_s = min(_lasted_s(saves, store, old) for _ in range(5))
             possible = old, (store / NAME).read_bytes()
             for number in range((count + version % 2) // 2):
                 (store / NAME).write_bytes(old)
-                if number % 2:
-                    saves.drive(store, Fault("any", int(rng.integers(1, CALL_MAX)), KILLED))
-                else:
-                    process = saves.start(store)
+                fault = Fault("any", int(rng.integers(1, CALL_MAX)), KILLED)
+                process = saves.start(store, *([fault] if number % 2 else []))
+                if not number % 2:
                     time.sleep(rng.uniform(0.0, lasted_s))
                     process.kill()
-                    process.communicate()
+                process.communicate()
+                found["kills"] += process.returncode == -signal.SIGKILL
                 found.update(_after_kill(store / NAME, possible))
                 progress((version - 2) * count // 2 + number + 1)
     return dict(found)
+
+
+def _lasted_s(saves: NativeSaves, store: Path, old: bytes) -> float:
+    (store / NAME).write_bytes(old)
+    begin_s = time.monotonic()
+    if LOST in saves.drive(store):
+        raise RuntimeError("a drive without a fault does not save")
+    return time.monotonic() - begin_s
 
 
 def native_saves(folder: Path, version: int) -> tuple[NativeSaves, Path]:

@@ -15,7 +15,12 @@ import pytest
 from pldf.errors import ModelError
 from pldf.files.disk import LOCK_NAME, folder_lock
 from pldf.profiles.profile_file import encode
-from pldf.profiles.store import ProfileConflict, ProfileUnreadable
+from pldf.profiles.store import (
+    ProfileConflict,
+    ProfileUnreadable,
+    continue_profile,
+    write_profile,
+)
 from profile_examples import DRIVER, ROUTE, drive_result, new_profile
 from stored import NAME, NOBODY_ELSE, content, load, saved_store
 
@@ -125,6 +130,18 @@ def test_a_bad_file_that_does_not_get_its_name_back_is_named(
     with pytest.raises(ModelError, match=rf"what was there is now .*{NAME}\.refused-1$"):
         profiles.append(profile, drive_result(profile))
     assert content(tmp_path) == {f"{NAME}.refused-1": b"bad"}
+
+
+def test_a_name_with_braces_is_a_name(tmp_path: Path) -> None:
+    path = tmp_path / "{driver}.2.pldf"
+    mine = new_profile()
+    late = mine.with_iteration(drive_result(mine, "late"))
+    write_profile(path, mine.with_iteration(drive_result(mine, "first", 1)))
+    with pytest.raises(ProfileConflict) as caught:
+        continue_profile(path, late)
+    assert caught.value.kept.name == "{driver}.2.conflict-1.pldf"
+    kept = write_profile(path, late, force=True)
+    assert kept is not None and kept.name == "{driver}.2.pldf.replaced-1"
 
 
 # The lock

@@ -186,9 +186,9 @@ def real_path(path: Path) -> Path:
     return Path(os.path.realpath(path))
 
 
-def free_name(path: Path, kind: str, end: str = "") -> Path:
-    """Return ``path.KIND-N`` and ``end`` with the first N that is not taken; needs the lock."""
-    names = (path.with_name(f"{path.name}.{kind}-{number}{end}") for number in count(1))
+def free_name(stem: Path, end: str = "") -> Path:
+    """Return ``stem-N`` and ``end`` with the first N that is not taken; needs the lock."""
+    names = (stem.with_name(f"{stem.name}-{number}{end}") for number in count(1))
     return next(name for name in names if not os.path.lexists(name))
 
 

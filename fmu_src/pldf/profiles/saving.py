@@ -28,7 +28,7 @@ from .profile_file import decode, encode, require_match, same_history
 from .stored_profile import ProfileRefused, StoredProfile
 
 SUFFIX: Final = ".pldf"
-REFUSED: Final = "refused"
+REFUSED: Final = ".refused"
 
 
 class ProfileConflict(ModelError):  # noqa: N818 - it says what happened, to a person
@@ -98,7 +98,7 @@ def put(
     except ProfileUnreadable as problem:
         raise _kept_beside(path, data, problem.why) from None
     except ProfileRefused as refusal:
-        kept = free_name(path, REFUSED)
+        kept = free_name(path.with_name(path.name + REFUSED))
         replace_file(path, data, aside=kept)
         outcome = f"kept as {kept.name}, a new profile took its place"
         return Saved(path, profile, str(refusal.followed_by(outcome)))
@@ -109,7 +109,7 @@ def put(
 
 
 def _kept_beside(path: Path, data: bytes, why: str) -> ProfileConflict:
-    kept = free_name(path.with_name(path.name.removesuffix(SUFFIX)), "conflict", SUFFIX)
+    kept = free_name(path.with_name(path.name.removesuffix(SUFFIX) + ".conflict"), SUFFIX)
     replace_file(kept, data)
     return ProfileConflict(path, kept, why)
 

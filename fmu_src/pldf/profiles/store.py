@@ -115,7 +115,7 @@ def write_profile(
         except ModelError:
             if not force:
                 raise
-            kept = free_name(target, "replaced")
+            kept = free_name(target.with_name(target.name + ".replaced"))
             replace_file(target, data, aside=kept)
             return kept
         put(target, profile, data, lambda _: True)
@@ -308,7 +308,7 @@ class ProfileStore:
                 try:
                     return read(path, wanted), "put aside by another process"
                 except ProfileRefused:
-                    kept = free_name(path, REFUSED)
+                    kept = free_name(path.with_name(path.name + REFUSED))
                     rename_file(path, kept)
                     return None, f"kept as {kept.name}"
         except (OSError, ModelError) as error:

@@ -137,7 +137,7 @@ class StudyResults:
                 self._rows(person)
             except ModelError as problem:
                 (self.out / DAMAGED).mkdir(exist_ok=True)
-                aside = free_name(self.out / DAMAGED / f"{person.id}-{{}}.json")
+                aside = free_name(self.out / DAMAGED / person.id, ".json")
                 rename_file(self._part(person.id), aside)
                 told, _, _ = str(problem).rpartition("; ")
                 yield f"{told}; it is kept as {aside}, {person.id} is driven anew"
