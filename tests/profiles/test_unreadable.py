@@ -6,7 +6,7 @@ import builtins
 import errno
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,8 @@ from typing import Any
 import pytest
 from pldf.errors import ModelError
 from pldf.files.disk import LOCK_NAME, folder_lock
+from pldf.function import DrivingFunction
+from pldf.kernel.codes import PROFILE_STATUS
 from pldf.profiles.profile_file import encode
 from pldf.profiles.store import (
     ProfileConflict,
@@ -22,10 +24,14 @@ from pldf.profiles.store import (
     write_profile,
 )
 from profile_examples import DRIVER, ROUTE, drive_result, new_profile
-from stored import NAME, NOBODY_ELSE, content, load, saved_store
+from stored import NAME, NOBODY_ELSE, content, failing, load, saved_store
 
 READ_ERRORS = [errno.EMFILE, errno.EIO, errno.ENOMEM, errno.EACCES]
 CONFLICT = NAME.replace(".pldf", ".conflict-1.pldf")
+
+needs_users = pytest.mark.skipif(
+    not hasattr(os, "geteuid") or os.geteuid() != 0, reason="needs to become another user"
+)
 
 
 @contextmanager
@@ -147,6 +153,51 @@ def test_a_name_with_braces_is_a_name(tmp_path: Path) -> None:
 # The lock
 
 
+def as_other_user(action: Callable[[], None]) -> str:
+    """Do it in a process of another user; return what it says of a ModelError."""
+    out, told = os.pipe()
+    process = os.fork()
+    if process == 0:
+        try:
+            os.setgid(12345)
+            os.setuid(12345)
+            action()
+        except ModelError as error:
+            os.write(told, str(error).encode())
+        except BaseException as error:
+            os.write(told, repr(error).encode())
+        os._exit(0)
+    os.close(told)
+    os.waitpid(process, 0)
+    with open(out, encoding="utf-8") as file:
+        return file.read()
+
+
+def lock_once(folder: Path) -> None:
+    with folder_lock(folder, NOBODY_ELSE):
+        pass
+
+
+@pytest.fixture
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """Return a folder into which everybody may write."""
+    import tempfile  # noqa: PLC0415 - pytest's folders are closed to others
+
+    with tempfile.TemporaryDirectory() as folder:
+        os.chmod(folder, 0o777)
+        yield Path(folder)
+
+
+@needs_users
+@pytest.mark.parametrize("mode", [0o644, 0o444], ids=oct)
+def test_a_left_over_lock_of_another_user_blocks_nobody(shared: Path, mode: int) -> None:
+    (shared / LOCK_NAME).touch()
+    os.chmod(shared / LOCK_NAME, mode)
+    assert as_other_user(lambda: lock_once(shared)) == ""
+    with folder_lock(shared, NOBODY_ELSE):
+        assert "held by another process" in as_other_user(lambda: lock_once(shared))
+
+
 @pytest.mark.skipif(os.name == "nt", reason="no such rights there")
 @pytest.mark.parametrize(("folder", "file"), [(0o777, 0o666), (0o770, 0o664), (0o700, 0o644)])
 def test_a_lock_is_shared_as_its_folder_is_whatever_the_umask(
@@ -159,3 +210,30 @@ def test_a_lock_is_shared_as_its_folder_is_whatever_the_umask(
             assert stat.S_IMODE((tmp_path / LOCK_NAME).stat().st_mode) == file
     finally:
         os.umask(before)
+
+
+# A store that cannot be written to
+
+
+def started(store: Path, learn: int = 1) -> tuple[str, list[str]]:
+    """Initialize a driving function; return its status of the profile, and its warnings."""
+    function, told = DrivingFunction(), []
+    function.report = lambda level, text: told.append(text) if level == "warning" else None  # type: ignore[method-assign, assignment]
+    function.texts.profile_store = str(store)
+    function.record.learn = learn
+    function.initialize()
+    return PROFILE_STATUS.items[function.record.profile_status], told
+
+
+def test_an_unwritable_store_is_told_before_the_drive(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert started(tmp_path / "new" / "store") == ("BASE", [])
+    monkeypatch.setattr(os, "open", failing(errno.EROFS))
+    status, (text,) = started(tmp_path / "new" / "store")
+    assert status == "NOT_WRITABLE"
+    assert text.startswith(
+        f"what this drive teaches cannot be saved: {tmp_path}: cannot be written"
+    )
+    assert started(tmp_path, learn=0) == ("BASE", [])
+    assert not list(tmp_path.iterdir())
