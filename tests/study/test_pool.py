@@ -127,6 +127,18 @@ def test_a_process_killed_before_it_reads_is_replaced(
     assert starts.count >= pool.TRIES
 
 
+def test_each_process_has_its_tries(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One killed forking process takes with it all that have begun: more than ``TRIES`` of them."""
+
+    def kill(count: int, worker: Any) -> None:
+        if count <= pool.TRIES + 1:
+            os.kill(worker.process.pid, KILL)
+
+    Start(monkeypatch, kill)
+    job = Job(study.settings)
+    assert driven(study, job, study.participants) == [one.id for one in study.participants]
+
+
 @pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="processes are not forked there")
 def test_the_process_that_forks_may_die_too(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
     def kill(count: int, _: Any) -> None:

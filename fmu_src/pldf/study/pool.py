@@ -9,6 +9,7 @@ first: nobody ever writes to a process that is not there.
 
 from __future__ import annotations
 
+import time
 from collections import Counter, deque
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import suppress
@@ -21,9 +22,11 @@ from .endings import die_of_ctrl_c, die_with_parent, end_with_main
 from .participants import Participant
 from .unit import Job, ParticipantResult, do_unit
 
-# So often a participant is driven again whose process died, and a process started that did not
-# come to drive.
+# So often a participant is driven again whose process died, and each of the processes started that
+# did not come to drive: when the one that forks dies, all that it has begun die with it.
 TRIES: Final = 3
+# What was killed is seen to be dead only a moment later.
+_PAUSE_S: Final = 0.1
 _NAMED_MAX: Final = 5
 
 Outcome = ParticipantResult | Exception
@@ -133,14 +136,16 @@ class _Pool:
 
     def _start(self, count: int) -> None:
         """Start what is missing to ``count``; fewer do, too, where the memory is short."""
-        while len(self._workers) < count and self._failed_starts < TRIES:
+        most = TRIES * self._count
+        while len(self._workers) < count and self._failed_starts < most:
             try:
                 self._workers.append(_Worker(self._context))
             except (OSError, EOFError):  # the latter: the process that forks was killed
                 self._failed_starts += 1
+                time.sleep(_PAUSE_S)
         if not self._workers:
             raise ModelError(
-                f"the processes of the study end while they start, {TRIES} in a row (out of "
+                f"the processes of the study end while they start, {most} in a row (out of "
                 "memory?); what is done is kept, the same command goes on; --jobs 1 needs none"
             )
 
