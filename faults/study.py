@@ -82,9 +82,13 @@ def _disturb(command: list[str], chance: random.Random, counts: Counts) -> None:
         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
     watched = psutil.Process(main.pid)
-    time.sleep(chance.uniform(0.1, 3.0))
+    # From before the first of its processes to where all of them drive, and a little later.
+    stage, deadline_s = chance.randint(0, 4), time.monotonic() + _HANGS_S
+    while len(_below(watched)) < stage and main.poll() is None and time.monotonic() < deadline_s:
+        time.sleep(0.002)
+    time.sleep(chance.uniform(0.0, 0.1))
     seen = _below(watched)
-    if seen and chance.random() < 0.6:
+    if seen and chance.random() < 0.7:
         counts["kills_of_one"] += 1
         with suppress(psutil.NoSuchProcess):
             chance.choice(seen).kill()
@@ -213,7 +217,7 @@ EXPERIMENTS = (
         "A study whose processes are killed at any moment neither hangs nor leaves a process "
         "behind, and goes on to the same bytes.",
         kills,
-        count=12,
+        count=10,
         short=2,
     ),
     Experiment(

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from pldf.cosim.fmu import Fmu
+from pldf.cosim.fmu import Fmu, Slave
 from pldf.cosim.master import ARRIVED, Drive, connections, drive
 from pldf.errors import ModelError
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE, STANDBY
@@ -280,6 +282,43 @@ def test_progress_is_reported(fmus: dict[str, Fmu]) -> None:
     assert seen[0] == 0.0
     assert seen == sorted(seen)
     assert len(seen) > 1
+
+
+def test_ctrl_c_in_the_middle_of_a_call_ends_the_drive_after_it(
+    fmus: dict[str, Fmu], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pressed while an FMU works, whose wrapper would take the exception for its own."""
+    steps, usual = [], Slave.step
+
+    def step_interrupted(slave: Slave, time_s: float, step_s: float) -> None:
+        usual(slave, time_s, step_s)
+        steps.append(slave)
+        if len(steps) == 4:
+            with suppress(KeyboardInterrupt):  # as pythonfmu does
+                signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(Slave, "step", step_interrupted)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            drive(fmus, values_of(PHASES["A3"], setting()), 100.0, 0.1)
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.parametrize("handler", [signal.SIG_IGN, signal.SIG_DFL])
+def test_ctrl_c_that_others_handle_stays_theirs(fmus: dict[str, Fmu], handler: Any) -> None:
+    seen: list[Any] = []
+    before = signal.signal(signal.SIGINT, handler)
+    try:
+        drive(
+            fmus, values_of(PHASES["A3"], setting()), 10.0, 0.1,
+            lambda _: seen.append(signal.getsignal(signal.SIGINT)),
+        )  # fmt: skip
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert seen and set(seen) == {handler}
 
 
 def test_the_working_folder_stays(fmus: dict[str, Fmu]) -> None:
