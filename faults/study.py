@@ -217,7 +217,7 @@ EXPERIMENTS = (
         "A study whose processes are killed at any moment neither hangs nor leaves a process "
         "behind, and goes on to the same bytes.",
         kills,
-        count=10,
+        count=8,
         short=2,
     ),
     Experiment(
@@ -225,14 +225,14 @@ EXPERIMENTS = (
         "A study that a full disk or a kill stopped at any file goes on, or restarts, to the same "
         "bytes.",
         full_disk,
-        count=40,
+        count=20,
         short=3,
     ),
     Experiment(
         "study_damaged_parts",
         "A damaged part of a study is told, kept aside, driven anew, and never in a table.",
         damaged_parts,
-        count=60,
+        count=30,
         short=4,
     ),
 )
