@@ -21,7 +21,7 @@ class Experiment:
     """One promise and the way to try to break it.
 
     Attributes:
-        name: unique, lower case with underscores, e.g. ``kills_while_saving``.
+        name: unique, lower case with underscores, e.g. ``kills_of_native_fmus``.
         promise: what holds whatever happens, in one sentence.
         run: does so many rounds with this seed, tells how many are done, returns what it counted.
         count: rounds in ``make faults``.
