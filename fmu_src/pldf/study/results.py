@@ -162,8 +162,8 @@ class StudyResults:
         there = [name for name in names if (self.out / name).exists()]
         if there and not is_hardly_begun(self.out):
             raise ModelError(
-                f"{self.out}: holds files that are not from a study of participants "
-                f"({', '.join(there)}); choose another --out"
+                f"{self.out}: holds files that are not from a study of participants; choose "
+                f"another --out ({', '.join(there)} may be yours)"
             )
 
     def _require_same(self) -> None:
