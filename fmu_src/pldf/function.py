@@ -60,10 +60,11 @@ KEPT_BESIDE: Final = (
     "a file of its own"
 )
 
-# Bounds of every profile, and what the base profile is planned with: it must keep to them.
+# Bounds of every profile, and what the base profile is planned with: it must keep to them. Where 0
+# is in the range of a parameter, it stands for no bound.
 BOUNDS: Final = tuple(
     (f"learning_{bound}", f"planner_{bound}")
-    for bound in ("lateral_accel_max_mps2", "accel_max_mps2", "accel_min_mps2")
+    for bound in ("lateral_accel_max_mps2", "accel_max_mps2", "accel_min_mps2", "jerk_max_mps3")
 )
 
 
@@ -233,11 +234,16 @@ def check_bounds(st: PldfState) -> None:
     names = {signal.field: signal.name for signal in signals_of(st)}
     for bound, planned in BOUNDS:
         allowed, used = getattr(st, bound), getattr(st, planned)
-        if abs(used) > abs(allowed):
+        if _weaker(allowed, used):
             raise ModelError(
                 f"parameter {names[bound]} = {allowed:g}: it bounds every profile, so it must "
                 f"not be weaker than {names[planned]} = {used:g}"
             )
+
+
+def _weaker(bound: float, used: float) -> bool:
+    """Tell whether ``used`` goes beyond ``bound``; 0 is no bound."""
+    return bound != 0.0 and (used == 0.0 or abs(used) > abs(bound))
 
 
 def follow_newest(profile: ProfileArrays, stored: StoredProfile) -> None:

@@ -24,10 +24,12 @@ ROAD = road(500.0, ((0.0, 25.0),), [(200.0, 260.0, 0.01)])
 def planner_is_stronger_than_bounds(chosen: dict[str, Any]) -> bool:
     """Tell whether a base profile could break the bounds that learned profiles keep."""
     whole = asdict(PldfState()) | chosen
-    return any(
-        abs(whole[f"planner_{bound}"]) > abs(whole[f"learning_{bound}"])
+    pairs = [
+        (abs(whole[f"planner_{bound}"]), abs(whole[f"learning_{bound}"]))
         for bound in ("lateral_accel_max_mps2", "accel_max_mps2", "accel_min_mps2")
-    )
+    ]
+    jerks = [whole[f"{group}_jerk_max_mps3"] or inf for group in ("planner", "learning")]
+    return any(used > allowed for used, allowed in (*pairs, jerks))
 
 
 @settings(deadline=None, max_examples=25)

@@ -101,12 +101,13 @@ class Bench:
             self.history.append((*seen, st.hmi_next_distance_m, st.rate_combined))
 
     def learn(self) -> None:
-        """Learn, and take over what was learned."""
+        """Learn, and take over what was learned, under a harder bound: so the bounds cut it."""
         given = (self.st, self.route, self.profile, self.trace, self.work, self.following)
         self.functions["learn_drive"](*given)
-        for name in ("learned_mps", "offset_mps", "drive", "intervention"):
+        for name in ("learned_mps", "offset_mps", "drive", "intervention", "lessons", "bound"):
             following = np.asarray(getattr(self.following, name))
             np.asarray(getattr(self.profile, name))[:] = following
+        self.st.learning_lateral_accel_max_mps2 = 2.4
         self.functions["adopt_learned"](self.st, self.route, self.profile, self.work)
 
     def look(self) -> None:
@@ -193,7 +194,7 @@ SMALL_CALLS: dict[str, list[tuple[Any, ...]]] = {
     "stretched_position": [(101.3, 140.7, 0.3)],
     "source_position": [(101.3, 140.7, 0.3)],
     "curvature_factor": [(k, 0.004, 0.016) for k in (0.0, 0.004, 0.0073, 0.016, 0.1)],
-    "lowered": [(20.3, 19.9, 4.0), (19.0, 19.9, 4.0), (30.1, 3.3, 4.0)],
+    "steepest_rise": [(-3.1, 0.15, 4.0), (0.07, 0.15, 4.0), (3.9, 0.15, 4.0)],
 }
 
 

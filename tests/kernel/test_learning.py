@@ -94,7 +94,7 @@ def test_smooth_and_joined_to_the_unchanged_profile() -> None:
 
 
 def test_cross_faded_to_the_unchanged_profile_at_both_ends() -> None:
-    made = function(road(2000.0), learning_smoothing_window_m=1)
+    made = function(road(2000.0), learning_smoothing_window_m=1, learning_jerk_max_mps3=0.0)
     s_m = np.arange(0.0, 2000.5, 0.5)
     play(made, s_m, BASE + 0.5, mode=GAS_OVERRIDE, eligible=(s_m >= 800.0) & (s_m <= 1000.0))
     learned = made.learn().learned_mps

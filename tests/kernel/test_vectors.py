@@ -38,7 +38,10 @@ def preprocessed(made: DrivingFunction) -> np.ndarray:
 def test_braking_starts_where_it_must_for_a_lower_sign(accel_min: float, start_m: float) -> None:
     limits = ((0.0, 100.0 * KMH), (1000.0, 50.0 * KMH))
     made = function(
-        road(2000.0, limits), planner_accel_min_mps2=accel_min, planner_jerk_max_mps3=0.0
+        road(2000.0, limits),
+        planner_accel_min_mps2=accel_min,
+        planner_jerk_max_mps3=0.0,
+        learning_jerk_max_mps3=0.0,
     )
     base = np.array(made.profile.base_mps)
     first = int(np.flatnonzero(base < 100.0 * KMH)[0])

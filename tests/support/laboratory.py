@@ -68,9 +68,10 @@ def function(route: Route, stored: StoredProfile | None = None, **settings: Any)
 
 
 def plain(made: DrivingFunction) -> DrivingFunction:
-    """Switch off what follows the mean of eq. (3): no smoothing, no cross-fade."""
+    """Switch off what follows the mean of eq. (3): no smoothing, no cross-fade, no jerk bound."""
     made.record.learning_smoothing_window_m = 1
     made.record.learning_fade_m = 0
+    made.record.learning_jerk_max_mps3 = 0.0
     return made
 
 

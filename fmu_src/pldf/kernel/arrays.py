@@ -72,12 +72,16 @@ class TraceArrays(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Scratch space of planner and learning, one value per node each."""
+    """Scratch space of planner, learning and bounds, one value per node each."""
 
     a: Floats
     b: Floats
     c: Floats
     d: Floats
+    e: Floats
+    f: Floats
+    g: Floats
+    h: Floats
 
 
 class NextArrays(NamedTuple):

@@ -1,14 +1,21 @@
-"""Bounds that every learned profile keeps (section 3.8)."""
+"""Bounds that every learned profile keeps (section 3.8).
+
+They are kept where ``work.b`` marks a node: where this drive taught. Everything is lowered, nothing
+raised. Where a marked node would ask too much of an unmarked neighbour, the neighbour is lowered
+and marked as well: the segment grows by what the transition needs. A bound is asked for wherever it
+involves a marked node; so what older drives taught, and no marked node touches, is exempt.
+"""
 
 from __future__ import annotations
 
 from math import sqrt
 
-from .arrays import Floats, RouteArrays
+from .arrays import Floats, RouteArrays, Work
+from .codes import BOUND_ACCEL, BOUND_DECEL, BOUND_LATERAL_ACCEL, BOUND_LEGAL_LIMIT
+from .jerk import lower_jerk
+from .lowering import ROUNDING, UNMARKED, lower
 from .planner import cell_cap
 from .state import PldfState
-
-ROUNDING = 1e-9  # relative excess of b that is rounding, not a violation
 
 
 def hard_cap(st: PldfState, route: RouteArrays, node: int) -> float:
@@ -27,46 +34,85 @@ def _cell_bound(st: PldfState, route: RouteArrays, cell: int) -> float:
     )
 
 
-def enforce_bounds(st: PldfState, route: RouteArrays, speed: Floats, first: int, last: int) -> None:
-    """Bring ``speed`` (m/s) within the bounds on the nodes first..last; nothing else changes.
+def _cap_code(st: PldfState, route: RouteArrays, node: int) -> int:
+    """Return which of the two is the cap of ``node``."""
+    limit = min(route.limit_mps[node], route.limit_mps[max(node - 1, 0)])
+    if hard_cap(st, route, node) < limit + st.learning_over_limit_max_mps:
+        return BOUND_LATERAL_ACCEL
+    return BOUND_LEGAL_LIMIT
 
-    The neighbours outside are kept, so the acceleration bounds work both ways: what is too fast to
-    be reached or left is lowered, what is too slow is raised. The raised curve is one that the
-    unchanged profile allows, so it keeps the caps.
+
+def keep_bounds(
+    st: PldfState, route: RouteArrays, speed: Floats, bound: Floats, work: Work
+) -> None:
+    """Lower ``speed`` (m/s) until its marked nodes keep all bounds.
+
+    Args:
+        st: the parameters.
+        route: limit and curvature.
+        speed: per node; changed in place.
+        bound: per node: which bound cut it last (BOUND); written where one does.
+        work: ``b`` marks the nodes that are bounded, above 0; those lowered get the mark from which
+            the segment grew. ``c`` to ``g`` are overwritten.
     """
+    # What has just been marked is bounded, too. Ends when nothing is lowered: so a profile that has
+    # been through this is left as it is, to the bit.
+    while _lower_once(st, route, speed, bound, work) > 0:
+        pass
+
+
+def _lower_once(st: PldfState, route: RouteArrays, speed: Floats, bound: Floats, work: Work) -> int:
+    """Apply caps, slopes and jerk one after the other; return how often something was lowered."""
     rise = 2.0 * st.learning_accel_max_mps2
     fall = -2.0 * st.learning_accel_min_mps2
-    n = len(speed)
-    for i in range(first, last + 1):
-        speed[i] = min(speed[i], hard_cap(st, route, i))
-    # Lowered before raised: what is raised to an unchanged edge must not be lowered again.
-    for i in range(max(first, 1), last + 1):
-        speed[i] = lowered(speed[i], speed[i - 1], rise)
-    for i in range(min(last, n - 2), first - 1, -1):
-        speed[i] = lowered(speed[i], speed[i + 1], fall)
-    if first > 0:
-        for i in range(first, last + 1):
-            speed[i] = _raised(speed[i], speed[first - 1], fall * (i - first + 1))
-    if last < n - 1:
-        for i in range(last, first - 1, -1):
-            speed[i] = _raised(speed[i], speed[last + 1], rise * (last + 1 - i))
-    # With neighbours that keep the caps only rounding is left to do. With others the caps win, and
-    # the acceleration bound gives way.
-    for i in range(first, last + 1):
-        speed[i] = min(speed[i], hard_cap(st, route, i))
+    count = _lower_to_caps(st, route, speed, bound, work)
+    for i in range(len(speed)):
+        work.c[i] = speed[i] * speed[i]
+    count += _lower_slopes(bound, work, rise, fall)
+    if st.learning_jerk_max_mps3 > 0.0:
+        count += lower_jerk(st.learning_jerk_max_mps3, bound, work, rise, fall)
+    if count > 0:
+        for i in range(len(speed)):
+            if work.c[i] != speed[i] * speed[i]:
+                speed[i] = sqrt(work.c[i])
+    return count
 
 
-def lowered(speed: float, neighbour: float, change: float) -> float:
-    """Return ``speed`` lowered until its square exceeds the neighbour's by ``change`` at most."""
-    allowed = neighbour * neighbour + change
-    if speed * speed > allowed * (1.0 + ROUNDING):
-        return sqrt(allowed)
-    return speed
+def _lower_to_caps(
+    st: PldfState, route: RouteArrays, speed: Floats, bound: Floats, work: Work
+) -> int:
+    count = 0
+    for i in range(len(speed)):
+        if work.b[i] != UNMARKED and speed[i] > hard_cap(st, route, i):
+            speed[i] = hard_cap(st, route, i)
+            bound[i] = _cap_code(st, route, i)
+            count += 1
+    return count
 
 
-def _raised(speed: float, edge: float, change: float) -> float:
-    """Return ``speed`` raised until its square is at most ``change`` below the edge's."""
-    allowed = edge * edge - change
-    if speed * speed < allowed * (1.0 - ROUNDING):
-        return sqrt(allowed)
-    return speed
+def _lower_slopes(bound: Floats, work: Work, rise: float, fall: float) -> int:
+    n = len(work.c)
+    count = 0
+    for i in range(1, n):
+        mark = max(work.b[i], work.b[i - 1])
+        count += lower(work, bound, i, work.c[i - 1] + rise, mark, BOUND_ACCEL)
+    for i in range(n - 2, -1, -1):
+        mark = max(work.b[i], work.b[i + 1])
+        count += lower(work, bound, i, work.c[i + 1] + fall, mark, BOUND_DECEL)
+    return count
+
+
+def mark_violations(st: PldfState, route: RouteArrays, speed: Floats, marks: Floats) -> None:
+    """Mark the nodes of ``speed`` that exceed a cap or, beside a neighbour, a slope."""
+    rise = 2.0 * st.learning_accel_max_mps2
+    fall = -2.0 * st.learning_accel_min_mps2
+    for i in range(len(speed)):
+        here = speed[i] * speed[i]
+        violated = speed[i] > hard_cap(st, route, i)
+        if i > 0:
+            before = speed[i - 1] * speed[i - 1]
+            violated = violated or here > (before + rise) * (1.0 + ROUNDING)
+        if i < len(speed) - 1:
+            behind = speed[i + 1] * speed[i + 1]
+            violated = violated or here > (behind + fall) * (1.0 + ROUNDING)
+        marks[i] = 1.0 if violated else UNMARKED

@@ -6,8 +6,10 @@ Order: set speed, plan anew, stretch pedal interventions, segments, mean, smooth
 from __future__ import annotations
 
 from .arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
-from .bounds import enforce_bounds
+from .bounds import hard_cap, keep_bounds
+from .codes import BOUND_NONE
 from .interpolation import cell_at, value_at
+from .lowering import UNMARKED
 from .offsets import adopt_offsets
 from .preparation import plan
 from .smoothing import smoothed_at
@@ -31,7 +33,7 @@ def learn_drive(
     """Fill ``following`` with what this drive leaves for the next one.
 
     ``profile`` holds the profile driven. ``work`` is overwritten: a = preprocessed speed,
-    b = marks, c and d scratch.
+    b = marks, c = profile before the pedals' lessons, d = their mean, all else scratch.
     """
     copy_profile(profile, following)
     if st.nodes < 2:
@@ -41,7 +43,8 @@ def learn_drive(
         _plan_with_offsets(st, route, profile, work, following)
         _carry_learned(st, route, profile, following, drive)
     _preprocess(st, route, trace, work)
-    _learn_segments(st, route, trace, work, following)
+    _learn_segments(st, trace, work, following)
+    _bound_segments(st, route, work, following, drive)
 
 
 def copy_profile(profile: ProfileArrays, following: NextArrays) -> None:
@@ -80,23 +83,17 @@ def _carry_learned(
 ) -> None:
     """Where the plan changed, put what the pedals taught on top of the new plan (decision).
 
-    A slowdown taught at a much higher set speed ends at the lowest speed that may be learned.
+    A slowdown taught at a much higher set speed ends at the lowest speed that may be learned, and
+    what was taught at a lower one at the caps.
     """
-    n = len(following.planned_mps)
-    first = -1
-    for i in range(n):
-        changed = following.planned_mps[i] != profile.planned_mps[i]
-        if changed:
+    for i in range(len(following.planned_mps)):
+        if following.planned_mps[i] != profile.planned_mps[i]:
             taught = profile.learned_mps[i] - profile.planned_mps[i]
             slowest = min(following.planned_mps[i], st.learning_speed_min_mps)
-            following.learned_mps[i] = max(following.planned_mps[i] + taught, slowest)
+            carried = max(following.planned_mps[i] + taught, slowest)
+            following.learned_mps[i] = min(carried, hard_cap(st, route, i))
             following.drive[i] = drive
             following.intervention[i] = 0.0
-            if first < 0:
-                first = i
-        if first >= 0 and (i == n - 1 or not changed):
-            enforce_bounds(st, route, following.learned_mps, first, i if changed else i - 1)
-            first = -1
 
 
 def _preprocess(st: PldfState, route: RouteArrays, trace: TraceArrays, work: Work) -> None:
@@ -129,14 +126,13 @@ def _insert_stretched(st: PldfState, trace: TraceArrays, work: Work, k: int, alp
         work.b[i] = k + 1.0 if usable and speed >= st.learning_speed_min_mps else NOT_LEARNED
 
 
-def _learn_segments(
-    st: PldfState, route: RouteArrays, trace: TraceArrays, work: Work, following: NextArrays
-) -> None:
+def _learn_segments(st: PldfState, trace: TraceArrays, work: Work, following: NextArrays) -> None:
     """Find each run that deviates because of the driver, and learn it."""
     end = st.first_node + st.nodes
     i = st.first_node
-    # Deviations are judged against the profile before any segment of this drive is learned.
-    for j in range(i, end):
+    # Deviations are judged against the profile before any segment of this drive is learned, and
+    # smoothing is padded with it: so the order of the segments does not matter.
+    for j in range(len(work.c)):
         work.c[j] = following.learned_mps[j]
     while i < end:
         if not _deviates(st, work, i):
@@ -145,7 +141,6 @@ def _learn_segments(
         last = _end_of_segment(st, trace, work, i, end)
         if _was_caused_by_driver(trace, work, i, last):
             _learn_segment(st, work, following, i, last)
-            enforce_bounds(st, route, following.learned_mps, i, last)
         i = last + 1
 
 
@@ -180,9 +175,9 @@ def _learn_segment(st: PldfState, work: Work, following: NextArrays, first: int,
     half = int(0.5 * (st.learning_smoothing_window_m - 1))
     n = len(work.a)
     for i in range(max(first - half, 0), min(last + half, n - 1) + 1):
-        work.d[i] = following.learned_mps[i]
+        work.d[i] = work.c[i]
     for i in range(first, last + 1):
-        driven = following.learned_mps[i]
+        driven = work.c[i]
         work.d[i] = driven + st.learning_weight * (work.a[i] - driven)
     # Nodes before the first intervention belong to it, nodes behind one to the one just ended.
     number = 0.0
@@ -192,8 +187,25 @@ def _learn_segment(st: PldfState, work: Work, following: NextArrays, first: int,
         # Counted from the unchanged neighbours, so that not even the outermost node jumps.
         edge = min(i - first + 1, last - i + 1)
         share = min(edge / (st.learning_fade_m + 1.0), 1.0)
-        driven = following.learned_mps[i]
+        driven = work.c[i]
         following.learned_mps[i] = driven + share * (smoothed_at(work.d, i, half) - driven)
         number = work.b[i] if work.b[i] > 0.0 else number
         following.drive[i] = st.profile_iteration + 1.0
         following.intervention[i] = number
+        following.lessons[i] += 1.0
+
+
+def _bound_segments(
+    st: PldfState, route: RouteArrays, work: Work, following: NextArrays, drive: float
+) -> None:
+    """Keep the bounds, once, on all that this drive changed; what that lowers around it joins."""
+    for i in range(len(work.b)):
+        work.b[i] = UNMARKED
+        if following.drive[i] == drive:
+            work.b[i] = following.intervention[i] + 1.0
+            following.bound[i] = BOUND_NONE
+    keep_bounds(st, route, following.learned_mps, following.bound, work)
+    for i in range(len(work.b)):
+        if work.b[i] != UNMARKED:
+            following.drive[i] = drive
+            following.intervention[i] = work.b[i] - 1.0

@@ -15,7 +15,7 @@ from .codes import (
     STRETCH,
     STRETCH_RECORDED,
 )
-from .signals import choice_parameter, count_parameter, flag_parameter, real_parameter
+from .signals import choice_parameter, count_parameter, flag_parameter, real_parameter, since
 from .units import MPS_PER_KMH
 
 
@@ -205,4 +205,11 @@ class LearningParameters:
     learning_accel_min_mps2: float = real_parameter(
         "Strongest deceleration of a learned profile, negative",
         "m/s2", start=-3.0, low=-10.0, high=-0.1,
+    )  # fmt: skip
+    learning_jerk_max_mps3: float = since(
+        "0.3",
+        real_parameter(
+            "Largest jerk that following a learned profile demands; 0 = not limited",
+            "m/s3", start=2.0, low=0.0, high=50.0,
+        ),
     )  # fmt: skip

@@ -85,7 +85,7 @@ def plan_profile(st: PlannerSettings, caps: Floats, speed: Floats, work: Work) -
         round_valleys(
             speed, bend, 2.0 * st.planner_accel_max_mps2, -2.0 * st.planner_accel_min_mps2
         )
-        round_peaks(speed, bend, work.b, work.c)
+        round_peaks(speed, bend, work.b, work.c, 0, len(speed) - 1)
     for i in range(len(speed)):
         speed[i] = sqrt(speed[i])
 
@@ -103,32 +103,37 @@ def round_valleys(b: Floats, bend: Floats, rise: float, fall: float) -> None:
     n = len(b)
     slope = fall
     for i in range(n - 2, -1, -1):
-        # Half a bend on either side of the bottom, where the slope is 0 at the node itself.
-        steepest = min(max(slope, -0.5 * bend[i + 1]) + bend[i + 1], fall)
-        b[i] = min(b[i], b[i + 1] + steepest)
+        b[i] = min(b[i], b[i + 1] + steepest_rise(slope, bend[i + 1], fall))
         slope = b[i] - b[i + 1]
     slope = rise
     for i in range(1, n):
-        steepest = min(max(slope, -0.5 * bend[i - 1]) + bend[i - 1], rise)
-        b[i] = min(b[i], b[i - 1] + steepest)
+        b[i] = min(b[i], b[i - 1] + steepest_rise(slope, bend[i - 1], rise))
         slope = b[i] - b[i - 1]
 
 
-def round_peaks(b: Floats, bend: Floats, stack: Floats, lifted: Floats) -> None:
+def steepest_rise(slope: float, bend: float, most: float) -> float:
+    """Return how much ``b`` may rise behind a node at which it has risen by ``slope``."""
+    # Half a bend on either side of the bottom, where the slope is 0 at the node itself.
+    return min(max(slope, -0.5 * bend) + bend, most)
+
+
+def round_peaks(
+    b: Floats, bend: Floats, stack: Floats, lifted: Floats, first: int, last: int
+) -> None:
     """Lower ``b`` until its slope falls by at most ``bend`` per node (concave kinks vanish).
 
-    ``stack`` and ``lifted`` are scratch space of the same length.
+    The nodes ``first`` and ``last``, and what lies outside, stay. ``stack`` and ``lifted`` are
+    scratch space of the same length.
     """
-    n = len(b)
     parabola = 0.0
     slope = 0.0
-    for i in range(n):
+    for i in range(first, last + 1):
         lifted[i] = b[i] + parabola
         slope += bend[i]
         parabola += slope
     top = 0
-    stack[0] = 0.0
-    for i in range(1, n):
+    stack[0] = first
+    for i in range(first + 1, last + 1):
         while top > 0 and _is_above(lifted, int(stack[top - 1]), int(stack[top]), i):
             top -= 1
         top += 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .arrays import Floats, ProfileArrays, RouteArrays, Work
-from .bounds import enforce_bounds
+from .bounds import keep_bounds, mark_violations
 from .codes import OFF, STANDBY
 from .hmi import find_turns
 from .last_check import find_braking_curves
@@ -40,12 +40,15 @@ def plan_legal(st: PldfState, route: RouteArrays, speed: Floats, work: Work) -> 
 def adopt_learned(st: PldfState, route: RouteArrays, profile: ProfileArrays, work: Work) -> None:
     """Make the learned profile and offsets in ``profile`` usable: plan, bounds, turns.
 
-    The bounds hold whatever was stored, since their parameters may have changed in between.
+    Caps and slopes hold whatever was stored, since their parameters may have changed in between;
+    around what they cut, jerk is bounded, too. A profile that was learned with these parameters is
+    followed as it was stored, to the bit.
     """
     plan(
         st, (route.limit_mps, profile.offset_mps, route.curvature_per_m), profile.planned_mps, work
     )
-    enforce_bounds(st, route, profile.learned_mps, 0, len(profile.learned_mps) - 1)
+    mark_violations(st, route, profile.learned_mps, work.b)
+    keep_bounds(st, route, profile.learned_mps, profile.bound, work)
     find_turns(profile.learned_mps, profile.turn_m)
 
 

@@ -10,7 +10,7 @@ bool learning_allows(const Importer *importer, const State *state) {
         const Variable *allowed = &model.variables[l->bounds[i].allowed];
         const Variable *used = &model.variables[l->bounds[i].used];
         double most = state->record[allowed->cell].real, value = state->record[used->cell].real;
-        if (fabs(value) > fabs(most))
+        if (most != 0.0 && (value == 0.0 || fabs(value) > fabs(most))) /* 0 is no bound */
             return importer_tell(importer, ERROR_LEVEL,
                                  "parameter %s = %g: it bounds every profile, so it must not be weaker "
                                  "than %s = %g", allowed->name, most, used->name, value);
