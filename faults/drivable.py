@@ -166,7 +166,7 @@ EXPERIMENTS = (
             "keeps its caps; elsewhere nothing changes; it is followed as stored, to the bit."
         ),
         run=learn_randomly,
-        count=150,
-        short=4,
+        count=100,
+        short=3,
     ),
 )

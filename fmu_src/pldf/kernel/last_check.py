@@ -64,7 +64,7 @@ def _find_curve(st: PldfState, curve: Floats, work: Work) -> None:
         curve[i] = min(curve[i], curve[i + 1] + fall)
     for i in range(n):
         work.a[i] = 2.0 * jerk / sqrt(curve[i])
-    round_peaks(curve, work.a, work.b, work.c)
+    round_peaks(curve, work.a, work.b, work.c, 0, n - 1)
     for i in range(n):
         curve[i] = sqrt(curve[i])
 
