@@ -12,7 +12,7 @@ from math import sqrt
 from .arrays import Floats, Work
 from .codes import BOUND_JERK
 from .lowering import ROUNDING, UNMARKED, lower
-from .planner import round_peaks, steepest_rise
+from .planner import SLOWEST_CAP_MPS, round_peaks, steepest_rise
 
 REACH_M = 64  # nodes beside a marked run that its peaks may take at first; doubled as needed
 
@@ -24,7 +24,8 @@ def lower_jerk(jerk_max_mps3: float, bound: Floats, work: Work, rise: float, fal
     acceleration). ``work.d`` to ``work.g`` are overwritten.
     """
     for i in range(len(work.c)):
-        work.d[i] = 2.0 * jerk_max_mps3 / sqrt(work.c[i])
+        # A file may hold slower ones.
+        work.d[i] = 2.0 * jerk_max_mps3 / max(sqrt(work.c[i]), SLOWEST_CAP_MPS)
     return _lower_valleys(bound, work, rise, fall) + _lower_peaks(bound, work)
 
 
