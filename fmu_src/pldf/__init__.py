@@ -23,10 +23,10 @@ _PLACES = {
     "drive": "api",
     "learn": "api",
     "open_route": "roads",
-    "read_profile": "profiles.store",
+    "read_profile": "profiles.single_file",
     "read_recording": "recordings.recording",
     "run_study": "api",
-    "write_profile": "profiles.store",
+    "write_profile": "profiles.single_file",
 }
 __all__ = list(_PLACES)
 

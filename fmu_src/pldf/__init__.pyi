@@ -6,9 +6,9 @@ from .api import learn as learn
 from .api import run_study as run_study
 from .cosim.master import Drive as Drive
 from .errors import ModelError as ModelError
+from .profiles.single_file import read_profile as read_profile
+from .profiles.single_file import write_profile as write_profile
 from .profiles.store import StoredProfile as StoredProfile
-from .profiles.store import read_profile as read_profile
-from .profiles.store import write_profile as write_profile
 from .recordings.offline import Learned as Learned
 from .recordings.recording import Recording as Recording
 from .recordings.recording import read_recording as read_recording

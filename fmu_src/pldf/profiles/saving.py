@@ -27,6 +27,7 @@ from .file_parts import FILE_MAX, MAGIC
 from .profile_file import decode, encode, require_match, same_history
 from .stored_profile import ProfileRefused, StoredProfile
 
+LOCK_TIMEOUT_S: Final = 10.0
 SUFFIX: Final = ".pldf"
 REFUSED: Final = ".refused"
 
