@@ -177,8 +177,8 @@ def test_the_functions_of_both_versions_are_known() -> None:
 # The C runtime
 
 FLOORS = (
-    ("os", "disk", "model"),
-    ("importer", "profile"),
+    ("os", "disk", "model", "text"),
+    ("importer", "profile", "profile_history", "prepared"),
     ("store",),
     ("run", "learning"),
     ("session", "values", "state"),
