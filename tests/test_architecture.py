@@ -99,3 +99,21 @@ def test_importing_the_kernel_leaves_nothing_behind() -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, check=False
     )
     assert result.returncode == 0, result.stderr
+
+
+def test_pytest_looks_into_every_room() -> None:
+    """Its own list of folders to leave out has had the name of a room on it."""
+    result = subprocess.run(
+        [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:cacheprovider"],
+        cwd=ROOT,
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+    )
+    collected = {line.partition("::")[0] for line in result.stdout.splitlines() if "::" in line}
+    there = {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "tests").rglob("test_*.py")
+        if path.parent.name != "wheel"  # those are run where the sources are out of reach
+    }
+    assert there <= collected
