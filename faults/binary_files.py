@@ -214,14 +214,14 @@ EXPERIMENTS: Final = (
         "mutated_profiles",
         "A mutated profile is refused and kept, or driven: alike to the bit in Python and C.",
         profiles,
-        count=3000,
+        count=9000,
         short=150,
     ),
     Experiment(
         "mutated_prepared_files",
         "A mutated prepared file is refused, or driven with finite outputs; nothing crashes.",
         prepared_files,
-        count=8000,
+        count=24_000,
         short=200,
     ),
 )

@@ -189,14 +189,14 @@ EXPERIMENTS: Final = (
         "disk_errors_in_python",
         "Whatever call to the disk fails, what was there stays, and no lesson is lost silently.",
         errors_in_python,
-        count=2500,
+        count=10_000,
         short=200,
     ),
     Experiment(
         "disk_errors_in_native_fmus",
         "The same holds for native FMUs, of FMI 2.0 and 3.0.",
         errors_in_native_fmus,
-        count=2000,
+        count=8000,
         short=40,
     ),
 )

@@ -166,7 +166,7 @@ EXPERIMENTS = (
             "keeps its caps; elsewhere nothing changes; it is followed as stored, to the bit."
         ),
         run=learn_randomly,
-        count=100,
+        count=300,
         short=3,
     ),
 )

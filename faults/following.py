@@ -225,7 +225,7 @@ EXPERIMENTS = (
         promise="In ACTIVE the car keeps 4.0 m/s2 lateral (+2 %) and its speed cap (+0.5 km/h) "
         "wherever full braking can, and it arrives, whatever was learned or stored.",
         run=follow,
-        count=100,
+        count=300,
         short=1,
     ),
 )

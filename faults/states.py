@@ -99,14 +99,14 @@ EXPERIMENTS: Final = (
         "forged_states",
         "A state that was changed is refused and changes nothing, or drives like any other.",
         forged_states,
-        count=8000,
+        count=32_000,
         short=300,
     ),
     Experiment(
         "forged_states_native",
         "So does a native FMU with every word of a state changed, under the right checksum.",
         forged_states_native,
-        count=10,
+        count=40,
         short=1,
     ),
 )

@@ -217,7 +217,7 @@ EXPERIMENTS = (
         "A study whose processes are killed at any moment neither hangs nor leaves a process "
         "behind, and goes on to the same bytes.",
         kills,
-        count=8,
+        count=40,
         short=2,
     ),
     Experiment(
@@ -225,14 +225,14 @@ EXPERIMENTS = (
         "A study that a full disk or a kill stopped at any file goes on, or restarts, to the same "
         "bytes.",
         full_disk,
-        count=20,
+        count=60,
         short=3,
     ),
     Experiment(
         "study_damaged_parts",
         "A damaged part of a study is told, kept aside, driven anew, and never in a table.",
         damaged_parts,
-        count=30,
+        count=120,
         short=4,
     ),
 )

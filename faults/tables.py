@@ -57,7 +57,7 @@ EXPERIMENTS = (
         "formulas_in_tables",
         "No name in a table becomes a formula in a spreadsheet, and every name is read back.",
         formulas,
-        count=4000,
+        count=8000,
         short=20,
     ),
 )

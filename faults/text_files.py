@@ -189,7 +189,7 @@ EXPERIMENTS: Final = (
         "mutated_text_files",
         "A mutated road, script, recording or study is understood or refused with its name.",
         text_files,
-        count=9000,
+        count=36_000,
         short=240,
     ),
 )
