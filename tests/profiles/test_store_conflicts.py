@@ -163,7 +163,7 @@ def test_lock_on_a_file_that_its_last_holder_removed_does_not_count(
 needs_users = pytest.mark.skipif(
     os.name == "nt" or os.geteuid() != 0, reason="only root can try it as other users"
 )
-SOMEBODY, SOMEBODY_ELSE = 12345, 12346
+SOMEBODY = 12345
 
 
 def as_user(user: int, umask: int, action: Callable[[], object]) -> str:
@@ -184,36 +184,6 @@ def as_user(user: int, umask: int, action: Callable[[], object]) -> str:
     os.waitpid(child, 0)
     with os.fdopen(read) as told:
         return told.read()
-
-
-@needs_users
-@pytest.mark.parametrize("mode", [0o777, 0o1777, 0o770])
-def test_a_lock_that_another_user_left_is_no_obstacle(
-    tmp_path_factory: pytest.TempPathFactory, mode: int
-) -> None:
-    shared = Path("/tmp", f"pldf-shared-{os.getpid()}-{mode:o}")  # pytest's own folders are private
-    shared.mkdir()
-    try:
-        os.chown(shared, 0, 500)
-        shared.chmod(mode)
-
-        def leave() -> None:
-            lock = folder_lock(shared, NOBODY_ELSE)
-            lock.__enter__()
-            os._exit(0)  # as when it is killed: the file stays
-
-        as_user(SOMEBODY, 0o077, leave)
-        assert (shared / LOCK_NAME).exists()
-        new = new_profile()
-        saved = as_user(
-            SOMEBODY_ELSE,
-            0o022,
-            lambda: ProfileStore(shared, NOBODY_ELSE).append(new, drive_result(new)),
-        )
-        assert saved == ""
-        assert (shared / NAME).exists()
-    finally:
-        shutil.rmtree(shared)
 
 
 @needs_users

@@ -12,13 +12,10 @@ import numpy as np
 import pytest
 from pldf.errors import ModelError
 from pldf.files import disk
-from pldf.files.disk import LOCK_NAME, folder_lock
-from pldf.profiles import saving
+from pldf.files.disk import LOCK_NAME
 from pldf.profiles.profile_file import encode
 from pldf.profiles.store import (
-    ProfileConflict,
     ProfileStore,
-    ProfileUnreadable,
     read_profile,
     write_profile,
 )
@@ -111,89 +108,6 @@ def test_short_sharing_violations_are_waited_for(
     monkeypatch.setattr(disk, "_RETRY_S", 0.0)
     monkeypatch.setattr(os, "replace", refuse_twice)
     assert len(load(saved_store(tmp_path)).iterations) == 2
-
-
-# What keeps a sound file from being read: too many open files, a bad medium, no memory.
-READ_ERRORS = [errno.EMFILE, errno.EIO, errno.ENOMEM, errno.EACCES]
-
-
-def unreadable(monkeypatch: pytest.MonkeyPatch, problem: Exception) -> None:
-    def fail(path: Path, *_: object) -> bytes:
-        raise problem
-
-    monkeypatch.setattr(saving, "read_file", fail)
-
-
-@pytest.mark.parametrize("number", READ_ERRORS, ids=os.strerror)
-def test_a_profile_that_cannot_be_read_now_is_not_touched(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int
-) -> None:
-    profiles = saved_store(tmp_path)
-    before = content(tmp_path)
-    with monkeypatch.context() as then:
-        unreadable(then, OSError(number, os.strerror(number)))
-        with pytest.raises(ProfileUnreadable, match=os.strerror(number)):
-            profiles.load(DRIVER, ROUTE, 11)
-    assert content(tmp_path) == before
-    # The drive began with nothing known: what it taught must not take the place of two drives.
-    with pytest.raises(ProfileConflict) as caught:
-        profiles.append(new_profile(), drive_result(new_profile()))
-    assert len(read_profile(caught.value.kept).iterations) == 1
-    assert content(tmp_path)[NAME] == before[NAME]
-
-
-@pytest.mark.parametrize("number", [*READ_ERRORS, None])
-def test_what_was_learned_is_kept_beside_a_profile_that_cannot_be_read_now(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int | None
-) -> None:
-    profiles = saved_store(tmp_path)
-    before, profile = content(tmp_path), load(profiles)
-    problem = MemoryError() if number is None else OSError(number, os.strerror(number))
-    with monkeypatch.context() as then:
-        unreadable(then, problem)
-        with pytest.raises(ProfileConflict, match=r"cannot be read now .* left as") as caught:
-            profiles.append(profile, drive_result(profile))
-    kept = caught.value.kept
-    assert kept.name == NAME.replace(".pldf", ".conflict-1.pldf")
-    assert encode(read_profile(kept)) == encode(profile.with_iteration(drive_result(profile)))
-    assert content(tmp_path) == {**before, kept.name: kept.read_bytes()}
-
-
-def test_a_bad_file_keeps_its_name_when_the_new_one_cannot_be_written(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / NAME).write_bytes(b"bad")
-    really_replace = os.replace
-    for fails in ("fsync", "replace"):
-        with monkeypatch.context() as then:
-            if fails == "fsync":
-                then.setattr(os, "fsync", failing(errno.ENOSPC))
-            else:  # of the new file alone
-
-                def replace(source: Path, target: Path) -> None:
-                    if str(source).endswith(".tmp"):
-                        raise OSError(errno.ENOSPC, "No space left on device")
-                    really_replace(source, target)
-
-                then.setattr(os, "replace", replace)
-            with pytest.raises(ModelError, match="what was there is unchanged"):
-                ProfileStore(tmp_path).append(new_profile(), drive_result(new_profile()))
-        assert content(tmp_path) == {NAME: b"bad"}
-
-
-def test_an_unwritable_store_is_found_before_the_drive(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for folder in (tmp_path, tmp_path / "not" / "yet"):
-        profiles = ProfileStore(folder, NOBODY_ELSE)
-        profiles.require_writable()
-        with monkeypatch.context() as then:
-            then.setattr(os, "open", failing(errno.EROFS))
-            with pytest.raises(ModelError, match=r"cannot be written to \(Read-only file system\)"):
-                profiles.require_writable()
-        with folder_lock(tmp_path, NOBODY_ELSE):  # somebody who is saving is no fault
-            profiles.require_writable()
-        assert list(tmp_path.iterdir()) == []
 
 
 @needs_sigkill
