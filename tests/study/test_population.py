@@ -90,6 +90,10 @@ def test_a_distribution_survives_its_table() -> None:
     [
         ({"wish.hope": {"law": "share", "share": 1}}, "not a driver parameter; known: wish.offset"),
         ({"wish.offset_mps": {"law": "gauss"}}, "law = one of normal, lognormal"),
+        (
+            {"wish.offset_mps": {"law": "lognormal", "median": 1.0, "sigma": 1e9}},
+            r"sigma = 1e\+09 must lie between 0 and 10",
+        ),
         ({"wish.offset_mps": 2.0}, "law = one of"),
         ({"wish.offset_mps": {"law": "normal", "mean": 1}}, "missing 1 required .* 'sd'"),
         ({"wish.offset_mps": {"law": "normal", "mean": 1, "sd": "x"}}, "could not convert"),

@@ -36,6 +36,9 @@ class Law(Protocol):
         """Return the quantile of ``u``, which is above 0 and below 1."""
 
 
+SIGMA_MAX: Final = 10.0  # one sigma off is 22,000 times the median then: nobody is like that
+
+
 @dataclass(frozen=True)
 class Normal:
     """Normal distribution; values outside ``low``..``high`` become the nearer end."""
@@ -58,6 +61,10 @@ class Lognormal:
     sigma: float
     low: float = -np.inf
     high: float = np.inf
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.sigma <= SIGMA_MAX:
+            raise ValueError(f"sigma = {self.sigma:g} must lie between 0 and {SIGMA_MAX:g}")
 
     def at(self, u: float) -> float:
         """Return the quantile of ``u``."""
