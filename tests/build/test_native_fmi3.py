@@ -92,19 +92,17 @@ def test_a_state_of_fmi2_goes_on_in_fmi3(pair: tuple[Host, Host3]) -> None:
 
 
 def test_fmpy_simulates_both_archives_alike(native_folder: Path) -> None:
+    # Without a logger of its own: fmpy would leave the address of that one in its library, and the
+    # next FMU of this process that has something to say would call it after it is gone.
     for name in NAMES:
         first, second = (
-            simulate_fmu(str(folder / f"{name}.fmu"), stop_time=2.005, logger=print_nothing)
+            simulate_fmu(str(folder / f"{name}.fmu"), stop_time=2.005)
             for folder in (native_folder, native_folder / "fmi3")
         )
         assert first.dtype.names == second.dtype.names
         assert len(first) > 200
         for column in first.dtype.names:  # an enumeration's numbers have another size
             assert first[column].tolist() == second[column].tolist()
-
-
-def print_nothing(*_: Any) -> None:
-    """Log message callback of an importer that does not care."""
 
 
 # Life cycle
