@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Final
 
 import numpy as np
+from hostile_files import filled
 
 _CHECKSUM_SIZE: Final = len(b"crc32 00000000\n")
 _WORDS: Final = (
@@ -32,7 +33,7 @@ def mutated(good: bytes, rng: np.random.Generator) -> bytes:
         change: Callable[[bytes, np.random.Generator], bytes] = _CHANGES[rng.choice(len(_CHANGES))]
         body = change(body, rng)
     if rng.random() < 0.8:
-        body = _filled(body)
+        body = filled(body)
     if rng.random() < 0.9:
         return body + b"crc32 %08x\n" % zlib.crc32(body)
     return (body + good[-_CHECKSUM_SIZE:])[: rng.integers(0, len(good) + 9)]
@@ -135,15 +136,6 @@ def _stride(body: bytes) -> int:
     """Return the distance of a profile's blocks in bytes; of other files, something possible."""
     nodes = re.search(rb"\nnodes (\d{1,6})\n", body)
     return max(-(-8 * int(nodes[1]) // 64) * 64, 64) if nodes else 64
-
-
-def _filled(body: bytes) -> bytes:
-    """Return the body with as many spaces behind ``end`` as its header now needs."""
-    match = re.search(rb"\nend( *)\n", body)
-    if match is None:
-        return body
-    end = match.start() + len(b"\nend")
-    return body[:end] + b" " * (-(end + 1) % 64) + b"\n" + body[match.end() :]
 
 
 _CHANGES: Final = (

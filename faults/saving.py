@@ -69,7 +69,7 @@ def _killed(action: Callable[[], object], after_s: float) -> bool:
 def _after_kill(path: Path, possible: tuple[bytes, bytes]) -> Counts:
     data = path.read_bytes()
     others = {other.name for other in path.parent.iterdir()} - {path.name}
-    allowed = {f"{path.name}.tmp", "pldf-store.lock", "pldf-store.trial"}
+    allowed = {f"{path.name}.tmp", "pldf-store.lock"}
     return {
         "rounds": 1,
         "saved": data == possible[1],

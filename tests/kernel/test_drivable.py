@@ -12,9 +12,10 @@ from hypothesis import strategies as hs
 from laboratory import KMH, Array, after, bent, function, play_override, road
 from pldf.errors import ModelError
 from pldf.function import DrivingFunction
-from pldf.kernel.bounds import keep_bounds
 from pldf.kernel.codes import BOUND_JERK, BOUND_LATERAL_ACCEL, BOUND_LEGAL_LIMIT, BOUND_NONE
 from pldf.profiles.stored_profile import Iteration
+
+from faults.drivable import bounded_again
 
 BASE = 100.0 * KMH
 JERK_MAX = 2.0
@@ -39,14 +40,6 @@ def jerk(learned: Array) -> Array:
 def demanded(learned: Array, changed: Any) -> float:
     """The largest jerk whose second difference involves a node that was changed."""
     return float(jerk(learned)[changed[2:] | changed[1:-1] | changed[:-2]].max(initial=0.0))
-
-
-def bounded_again(made: DrivingFunction, learned: Array, taught: Any) -> Array:
-    speed, bound = learned.copy(), np.zeros(len(learned))
-    np.asarray(made.work.b)[:] = taught
-    columns: Any = (memoryview(speed), memoryview(bound))
-    keep_bounds(made.record, made.route, *columns, made.work)
-    return speed
 
 
 def lesson(speed: float, first: float, last: float, **settings_: float) -> DrivingFunction:

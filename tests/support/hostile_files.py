@@ -56,9 +56,9 @@ def damaged(good: bytes, seed: int = 3) -> Iterator[bytes]:
     for line in body[:head].split(b"\n"):
         name = line.split(b" ")[0]
         for number in _NUMBERS:
-            yield checked(_filled(body.replace(line, name + b" " + number, 1)))
-        yield checked(_filled(body.replace(line + b"\n", b"", 1)))
-        yield checked(_filled(body.replace(line + b"\n", 2 * (line + b"\n"), 1)))
+            yield checked(filled(body.replace(line, name + b" " + number, 1)))
+        yield checked(filled(body.replace(line + b"\n", b"", 1)))
+        yield checked(filled(body.replace(line + b"\n", 2 * (line + b"\n"), 1)))
     for value in _VALUES:
         for at in rng.integers(0, (len(body) - start) // 8, 6):
             place = start + 8 * int(at)
@@ -72,7 +72,7 @@ def with_notes(good: bytes) -> Iterator[bytes]:
     short = re.match(rb"\niteration \d+ (?:[a-z]+ )?\d+", line)
     assert short is not None
     for note in _NOTES:
-        yield checked(_filled(body.replace(line, short.group() + note, 1)))
+        yield checked(filled(body.replace(line, short.group() + note, 1)))
 
 
 def with_other_blocks(good: bytes) -> Iterator[bytes]:
@@ -84,7 +84,7 @@ def with_other_blocks(good: bytes) -> Iterator[bytes]:
     stride = (len(body) - start) // max(sum(line.startswith(b"block ") for line in lines), 1)
     for kind in _KINDS:
         line = re.findall(rb"\niteration [^\n]*", body)[-1]
-        yield checked(_filled(body.replace(line, re.sub(rb" [a-z]+ ", kind, line, count=1), 1)))
+        yield checked(filled(body.replace(line, re.sub(rb" [a-z]+ ", kind, line, count=1), 1)))
     blocks = [body[at : at + stride] for at in range(start, len(body), stride)]
     places = [number for number, line in enumerate(lines) if line.startswith(b"block ")]
     for number, place in enumerate(places):
@@ -103,7 +103,7 @@ def with_other_blocks(good: bytes) -> Iterator[bytes]:
 def _with_blocks(lines: list[bytes], blocks: list[bytes]) -> bytes:
     head = b"\n".join(lines) + b"\nend"
     stated = b"blocks %d" % len(blocks)
-    body = _filled(re.sub(rb"\nblocks \d+", b"\n" + stated, head) + b"\n")
+    body = filled(re.sub(rb"\nblocks \d+", b"\n" + stated, head) + b"\n")
     return checked(body + b"".join(blocks))
 
 
@@ -130,7 +130,7 @@ def is_prepared(data: bytes, kind: str, columns: int) -> bool:
     return data == checked(data[:-CHECKSUM_SIZE]) and bool(np.isfinite(values).all())
 
 
-def _filled(body: bytes) -> bytes:
+def filled(body: bytes) -> bytes:
     """Return the body with as many spaces behind ``end`` as its header now needs."""
     match = re.search(rb"\nend( *)\n", body)
     if match is None:
