@@ -225,7 +225,7 @@ def test_slow_and_not_eligible_nodes_are_marked() -> None:
     assert np.all(usable[202:] == 0.0)
 
 
-@pytest.mark.parametrize(("hole_s", "marked"), [(0.9, False), (1.1, True)])
+@pytest.mark.parametrize(("hole_s", "marked"), [(0.9, False), (1.6, True)])
 def test_holes_in_the_recording_are_marked(hole_s: float, marked: bool) -> None:
     made = function(road(400.0))
     time = np.concatenate((np.arange(0.0, 5.0, 0.1), np.arange(5.0 + hole_s, 12.0, 0.1)))

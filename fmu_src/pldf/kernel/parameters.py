@@ -157,7 +157,7 @@ class LearningParameters:
         "Gap between learned runs below which they merge", "s", start=1.0, low=0.0, high=30.0
     )
     learning_recording_gap_s: float = real_parameter(
-        "Hole in the recording that rejects a segment", "s", start=1.0, low=0.01, high=60.0
+        "Hole in the recording that costs what overlaps it", "s", start=1.5, low=0.01, high=60.0
     )
     learning_speed_min_mps: float = real_parameter(
         "Speed below which nothing is learned", "m/s", start=10.0 * MPS_PER_KMH, low=1.0, high=50.0
@@ -211,5 +211,12 @@ class LearningParameters:
         real_parameter(
             "Largest jerk that following a learned profile demands; 0 = not limited",
             "m/s3", start=2.0, low=0.0, high=50.0,
+        ),
+    )  # fmt: skip
+    learning_offset_tolerance_mps: float = since(
+        "0.3",
+        real_parameter(
+            "Offset of the set speed up to which it is rounding of a recording or a display",
+            "m/s", start=0.5 * MPS_PER_KMH, low=0.0, high=5.0,
         ),
     )  # fmt: skip

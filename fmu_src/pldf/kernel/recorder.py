@@ -10,7 +10,6 @@ from __future__ import annotations
 from .arrays import RouteArrays, TraceArrays
 from .codes import ACTIVE, GAS_OVERRIDE, STANDBY
 from .interpolation import cell_at
-from .lever import SAME_SPEED_MPS
 from .state import PldfState
 
 SECOND_NS = 1e-9
@@ -39,7 +38,7 @@ def note_set_speed(st: PldfState) -> None:
     The outputs follow new inputs as soon as somebody reads them; what is recorded must not.
     """
     st.shown_set_mps = 0.0
-    if abs(st.set_speed_offset_mps) > SAME_SPEED_MPS:
+    if abs(st.set_speed_offset_mps) > st.learning_offset_tolerance_mps:
         st.shown_set_mps = st.set_speed_mps
 
 
