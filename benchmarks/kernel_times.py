@@ -51,7 +51,7 @@ def driven(route: RouteArrays) -> tuple[Any, ...]:
     kernel()["plan_base"](st[0], route, profile, work)
     trace.speed_mps[:] = np.asarray(profile.base_mps)
     trace.time_s[:] = np.concatenate(([0.0], np.cumsum(1.0 / np.asarray(profile.base_mps)[1:])))
-    trace.usable[:] = 1.0
+    trace.eligible[:] = 1.0
     starts = np.arange(300.0, nodes - 100.0, 600.0)
     for number, start in enumerate(starts):
         trace.start_m[number], trace.end_m[number] = start, start + 60.0

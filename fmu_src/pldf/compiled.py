@@ -37,10 +37,12 @@ from .kernel import (
     lowering,
     modes,
     offsets,
+    pieces,
     planner,
     preparation,
     recorder,
     replay,
+    segments,
     smoothing,
     stretch,
     substeps,
@@ -70,6 +72,8 @@ KERNEL_MODULES: tuple[ModuleType, ...] = (
     stretch,
     smoothing,
     offsets,
+    pieces,
+    segments,
     learning,
 )
 

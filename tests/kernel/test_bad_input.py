@@ -148,7 +148,7 @@ def test_a_glitch_of_the_position_does_not_spoil_the_recording(glitch_m: float) 
     while car.s_m < 300.0:
         car.step()
     trace = car.made.trace
-    assert trace.usable[250] == 1.0
+    assert trace.eligible[250] == 1.0
     assert trace.gap[250] == 0.0
     assert trace.time_s[250] > trace.time_s[150] > trace.time_s[50]
     assert car.made.record.drive_interventions == 1

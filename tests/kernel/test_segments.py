@@ -20,7 +20,7 @@ def learns_behind_a_gap(metres: int) -> bool:
     speed = np.asarray(made.trace.speed_mps)
     speed[:] = SPEED_MPS
     speed[100:201] = speed[second:401] = SPEED_MPS + 3.0
-    np.asarray(made.trace.usable)[:] = 1.0
+    np.asarray(made.trace.eligible)[:] = 1.0
     made.trace.start_m[0], made.trace.end_m[0] = 110.0, 190.0
     made.record.nodes, made.record.drive_interventions = nodes, 1
     learned = made.learn().learned_mps

@@ -19,6 +19,7 @@ from pldf.roads import Route, fingerprint
 
 KMH = 1.0 / 3.6
 STEP_S = 0.01
+BASE = 100.0 * KMH  # profile of a road without signs and curves
 
 Array = NDArray[np.float64]
 Span = tuple[float, float]
@@ -81,6 +82,11 @@ def after(made: DrivingFunction, iteration: Iteration) -> StoredProfile:
     return replace(made.stored, iterations=(*made.stored.iterations, iteration))
 
 
+def outcomes(made: DrivingFunction) -> Array:
+    """What the last lesson made of each pedal intervention."""
+    return np.array(made.following.outcome)[: made.record.drive_interventions]
+
+
 def within(s_m: Array, spans: Iterable[Span]) -> NDArray[np.bool_]:
     """True where a position lies in one of the half-open spans."""
     inside = np.zeros(len(s_m), dtype=bool)
@@ -127,6 +133,19 @@ def bent(*points: Span) -> Callable[[Array], Array]:
     """Speed over position: straight lines between (m, m/s)."""
     places, speeds = zip(*points, strict=True)
     return lambda s_m: np.interp(s_m, places, speeds)
+
+
+def changed(made: DrivingFunction, learned: Array) -> Array:
+    return np.flatnonzero(learned != np.array(made.profile.learned_mps))
+
+
+def override(speed_mps: float, first: float, last: float, **settings_: float) -> DrivingFunction:
+    """2 km at 100 km/h, with gas from ``first`` to ``last`` at another speed."""
+    made = function(road(2000.0), **settings_)
+    speed = bent((0, BASE), (first, BASE), (first + 1, speed_mps), (last, speed_mps),
+                 (last + 1, BASE), (2000, BASE))  # fmt: skip
+    play_override(made, speed, gas=[(first, last)])
+    return made
 
 
 class PointMass:

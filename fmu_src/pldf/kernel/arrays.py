@@ -64,7 +64,7 @@ class TraceArrays(NamedTuple):
 
     time_s: Floats  # node: time of first arrival
     speed_mps: Floats  # node: recorded speed; the minimum where the car stood
-    usable: Floats  # node: 1 = may be learned, 0 = not driven, too slow or not eligible
+    eligible: Floats  # node: 1 = learning was allowed, 0 = it was not, or not driven
     gap: Floats  # node: 1 = interpolated over a hole in the recording
     set_speed_mps: Floats  # node: manual set speed in force, 0 = none
     start_m: Floats  # intervention k: position at which it began
@@ -85,7 +85,10 @@ class Work(NamedTuple):
 
 
 class NextArrays(NamedTuple):
-    """What a finished drive leaves for the next one; the meaning is that of ``ProfileArrays``."""
+    """What a finished drive leaves for the next one, and what became of each intervention.
+
+    The meaning of what is there per node or cell is that of ``ProfileArrays``.
+    """
 
     planned_mps: Floats
     learned_mps: Floats
@@ -94,3 +97,9 @@ class NextArrays(NamedTuple):
     intervention: Floats
     lessons: Floats
     bound: Floats
+    outcome: Floats  # pedal intervention k: what became of it (OUTCOME in codes)
+    set_from_m: Floats  # series k of presses: where its offset begins to hold
+    set_to_m: Floats  # series k: where it ends
+    set_wish_mps: Floats  # series k: offset from the legal limit that the driver set
+    set_offset_mps: Floats  # series k: what was adopted of it
+    set_outcome: Floats  # series k: what became of it (OUTCOME in codes)

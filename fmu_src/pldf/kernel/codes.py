@@ -71,6 +71,17 @@ BOUND: Final = Enumeration(
     "Bound", ("NONE", "LATERAL_ACCEL", "LEGAL_LIMIT", "ACCEL", "DECEL", "JERK")
 )
 
+# What learning made of an intervention, by pedal or by lever.
+OUTCOME_NOT_MOVED: Final = 0  # the car moved less than a metre, so there is no place to learn
+OUTCOME_LEARNED: Final = 1
+OUTCOME_HOLE: Final = 2  # the recording has a hole where it or its stretched piece lies
+OUTCOME_STOP: Final = 3  # the car was slower than learning.speed_min_mps: a situation, not a wish
+OUTCOME_NOT_ELIGIBLE: Final = 4  # learning was not allowed there
+OUTCOME_TAKEN_BACK: Final = 5  # a series of presses that ended where it had begun
+OUTCOME: Final = Enumeration(
+    "Outcome", ("NOT_MOVED", "LEARNED", "HOLE", "STOP", "NOT_ELIGIBLE", "TAKEN_BACK")
+)
+
 # What became of the stored profile.
 PROFILE_BASE: Final = 0
 PROFILE_LOADED: Final = 1

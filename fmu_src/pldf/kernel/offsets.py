@@ -1,70 +1,158 @@
-"""Learning the set speed: the driver's offset is adopted as it is (section 3.7)."""
+"""Learning the set speed: the driver's offset is adopted as it is (section 3.7).
+
+The lever is pressed in series: presses at most ``learning_offset_series_s`` apart are one wish. It
+holds from where the series began (or from the limit's sign, if that was soon after it) with the
+value that the series ended with, up to the next series or the end of its limit. That a recording
+begins or ends is no sign and no press.
+"""
 
 from __future__ import annotations
 
-from .arrays import Floats, ProfileArrays, RouteArrays, TraceArrays
+from .arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays
+from .codes import OUTCOME_LEARNED, OUTCOME_NOT_ELIGIBLE, OUTCOME_TAKEN_BACK
 from .state import PldfState
 
+# What the offsets of a drive are read from, and where they go.
+Drive = tuple[RouteArrays, ProfileArrays, TraceArrays, NextArrays]
 
-def adopt_offsets(
-    st: PldfState,
-    route: RouteArrays,
-    profile: ProfileArrays,
-    trace: TraceArrays,
-    offset: Floats,
-) -> int:
-    """Write the offsets set in this drive into ``offset`` (m/s, per cell); return how many.
 
-    An offset holds from where it was set (or from its limit's sign, if set soon after it) to where
-    it ended; of several tips the first position and the final value count.
+def adopt_offsets(st: PldfState, drive: Drive) -> None:
+    """Write the offsets set in this drive into ``offset_mps`` of what follows (m/s, per cell).
+
+    What became of each series is written beside, their number into ``st.set_series``.
     """
-    adopted = 0
+    route = drive[0]
+    st.set_series = 0
     last = st.first_node + st.nodes - 1
-    i = st.first_node
-    while i <= last:
-        if trace.set_speed_mps[i] <= 0.0:
-            i += 1
-            continue
-        end = _end_of_run(route, trace, i, last)
-        value = trace.set_speed_mps[end] - route.limit_mps[end]
-        value = min(value, st.learning_over_limit_max_mps)
-        for cell in range(_first_cell(st, route, profile, trace, i), end + 1):
-            offset[cell] = value
-        adopted += 1
-        i = end + 1
-    return adopted
+    node = st.first_node
+    while node <= last:
+        end = _end_of_limit(route, node, last)
+        _adopt_in_limit(st, drive, node, end)
+        node = end + 1
 
 
-def _end_of_run(route: RouteArrays, trace: TraceArrays, start: int, last: int) -> int:
-    end = start
-    while (
-        end < last
-        and trace.set_speed_mps[end + 1] > 0.0
-        and route.limit_mps[end + 1] == route.limit_mps[start]
-    ):
+def _end_of_limit(route: RouteArrays, node: int, last: int) -> int:
+    """Return the last node, at most ``last``, up to which the limit at ``node`` holds."""
+    end = node
+    while end < last and route.limit_mps[end + 1] == route.limit_mps[node]:
         end += 1
     return end
 
 
-def _first_cell(
-    st: PldfState, route: RouteArrays, profile: ProfileArrays, trace: TraceArrays, node: int
-) -> int:
-    """Return the first cell of an offset whose first node is ``node``.
+def _adopt_in_limit(st: PldfState, drive: Drive, first: int, last: int) -> None:
+    """Adopt the series of the nodes ``first`` to ``last``, all under one limit."""
+    _, _, trace, following = drive
+    before = 0.0  # the manual set speed in force before the series, 0 = none
+    node = _next_press(st, trace, first, last, before)
+    while node <= last:
+        behind = _end_of_series(st, trace, node, last)
+        value = trace.set_speed_mps[behind - 1]
+        press = _next_press(st, trace, behind, last, value)
+        end = press - 1
+        # Where in a hole the next series began is not known.
+        while press <= last and trace.gap[end] > 0.0:
+            end -= 1
+        if value > 0.0:
+            _adopt_series(st, drive, node, end, last)
+        elif before <= 0.0:
+            ends_m = (float(_place_of(st, trace, node)), float(behind))
+            _note(st, following, ends_m, (0.0, 0.0), OUTCOME_TAKEN_BACK)
+        before = value
+        node = press
 
-    The lever was moved in the cell before that node. If that was soon after the sign, or before
-    the car had settled at the new speed, the driver meant the whole limit.
+
+def _next_press(st: PldfState, trace: TraceArrays, node: int, last: int, set_mps: float) -> int:
+    """Return the first node from ``node`` on with another set speed, ``last + 1`` if there is none.
+
+    A node within a hole of the recording says nothing of the lever.
     """
-    limit = route.limit_mps[node]
+    at = node
+    while at <= last and (trace.gap[at] > 0.0 or _is_same(st, trace.set_speed_mps[at], set_mps)):
+        at += 1
+    return at
+
+
+def _is_same(st: PldfState, one_mps: float, other_mps: float) -> bool:
+    if one_mps <= 0.0 or other_mps <= 0.0:
+        return one_mps <= 0.0 and other_mps <= 0.0
+    return abs(one_mps - other_mps) <= st.learning_offset_tolerance_mps
+
+
+def _end_of_series(st: PldfState, trace: TraceArrays, first: int, last: int) -> int:
+    """Return the node behind the last press of the series that begins at ``first``."""
+    end = first + 1
+    press = _next_press(st, trace, end, last, trace.set_speed_mps[first])
+    while press <= last and (
+        trace.time_s[press] - trace.time_s[end - 1] <= st.learning_offset_series_s
+    ):
+        end = press + 1
+        press = _next_press(st, trace, end, last, trace.set_speed_mps[press])
+    return end
+
+
+def _adopt_series(st: PldfState, drive: Drive, node: int, end: int, last: int) -> None:
+    """Adopt the series that begins at ``node``; its value holds to ``end``.
+
+    Beyond the last recorded node the driver has not ended it: it holds to the end of its limit.
+    """
+    route, _, trace, following = drive
+    nodes = len(route.limit_mps)
+    wish = trace.set_speed_mps[end] - route.limit_mps[node]
+    value = min(wish, st.learning_over_limit_max_mps)
+    first = _first_cell(st, drive, node)
+    if end == st.first_node + st.nodes - 1:
+        end = _end_of_limit(route, end, nodes - 1)
+    outcome = OUTCOME_NOT_ELIGIBLE
+    if trace.eligible[_place_of(st, trace, node)] > 0.0:
+        outcome = OUTCOME_LEARNED
+        for cell in range(first, end + 1):
+            if cell > last or trace.eligible[cell] > 0.0:
+                following.offset_mps[cell] = value
+    ends_m = (float(first), min(end + 1.0, nodes - 1.0))
+    _note(st, following, ends_m, (wish, value), outcome)
+
+
+def _note(
+    st: PldfState,
+    following: NextArrays,
+    ends_m: tuple[float, float],
+    wish_and_value_mps: tuple[float, float],
+    outcome: int,
+) -> None:
+    """Write down what became of a series."""
+    k = st.set_series
+    following.set_from_m[k] = ends_m[0]
+    following.set_to_m[k] = ends_m[1]
+    following.set_wish_mps[k] = wish_and_value_mps[0]
+    following.set_offset_mps[k] = wish_and_value_mps[1]
+    following.set_outcome[k] = outcome
+    st.set_series = k + 1
+
+
+def _place_of(st: PldfState, trace: TraceArrays, node: int) -> int:
+    """Return the cell in which the lever was moved, if ``node`` is the first that shows it."""
+    before = max(node - 1, st.first_node)
+    return node if trace.gap[before] > 0.0 else before
+
+
+def _first_cell(st: PldfState, drive: Drive, node: int) -> int:
+    """Return the first cell of a series whose first node is ``node``.
+
+    If the lever was moved soon after the sign, or before the car had settled at the new speed, the
+    driver meant the whole limit. A sign counts if the recording knows of both its sides.
+    """
+    route, profile, trace, _ = drive
     sign = node
-    while sign > 0 and route.limit_mps[sign - 1] == limit:
+    while sign > 0 and route.limit_mps[sign - 1] == route.limit_mps[node]:
         sign -= 1
-    passed = max(sign, st.first_node)
-    moved = max(node - 1, passed)
-    since_sign_s = trace.time_s[moved] - trace.time_s[passed]
-    settled = passed
+    moved = max(_place_of(st, trace, node), sign)
+    if sign <= st.first_node:
+        return moved
+    since_sign_s = trace.time_s[moved] - trace.time_s[sign]
+    settled = sign
     while settled < moved and not _is_settled(st, route, profile, trace, settled):
         settled += 1
-    settled_s = trace.time_s[settled] - trace.time_s[passed]
+    settled_s = trace.time_s[settled] - trace.time_s[sign]
     allowed_s = min(settled_s + st.learning_offset_settled_s, st.learning_offset_settled_max_s)
     if since_sign_s <= max(allowed_s, st.learning_offset_new_limit_s):
         return sign

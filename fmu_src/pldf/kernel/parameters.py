@@ -220,3 +220,10 @@ class LearningParameters:
             "m/s", start=0.5 * MPS_PER_KMH, low=0.0, high=5.0,
         ),
     )  # fmt: skip
+    learning_offset_series_s: float = since(
+        "0.3",
+        real_parameter(
+            "Presses of the lever at most this far apart are one series: one wish",
+            "s", start=5.0, low=0.0, high=60.0,
+        ),
+    )  # fmt: skip

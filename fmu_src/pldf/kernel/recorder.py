@@ -155,7 +155,7 @@ def _write_nodes(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None:
         speed = st.from_speed_mps + part * (st.knot_speed_mps - st.from_speed_mps)
         trace.speed_mps[i] = speed
         trace.time_s[i] = st.from_time_s + part * (st.knot_time_s - st.from_time_s)
-        trace.usable[i] = 1.0 if st.eligible != 0 and speed >= st.learning_speed_min_mps else 0.0
+        trace.eligible[i] = 1.0 if st.eligible != 0 else 0.0
         trace.gap[i] = 1.0 if hole else 0.0
         trace.set_speed_mps[i] = _set_speed_for(st, route, i)
 

@@ -43,9 +43,10 @@ def target_of(
     if st.manual_set_mps <= automatic_set_speed(route, profile, place[0]):
         return min(learned, st.manual_set_mps)
     speed = min(st.manual_set_mps, max(learned, value_of(profile.open_mps, place)))
-    behind = st.manual_behind_mps
-    approach = behind * behind - 2.0 * st.planner_accel_min_mps2 * (st.manual_end_m - s_m)
-    speed = min(speed, max(learned, sqrt(approach)))
+    if st.manual_end_m < len(profile.learned_mps) - 1:  # at the end of the route stands no sign
+        behind = st.manual_behind_mps
+        approach = behind * behind - 2.0 * st.planner_accel_min_mps2 * (st.manual_end_m - s_m)
+        speed = min(speed, max(learned, sqrt(approach)))
     slower = learned - value_of(profile.planned_mps, place)
     return max(speed + min(slower, 0.0), learned)
 

@@ -118,11 +118,11 @@ def _explain_intervention(learned: Learned, k: int) -> dict[str, Any]:
 
 def _why_not(learned: Learned, start_m: float, end_m: float) -> str:
     trace, st = learned.function.trace, learned.function.record
-    nodes = len(trace.usable)
+    nodes = len(trace.eligible)
     reach = slice(cell_at(nodes, start_m), cell_at(nodes, end_m) + 1)
     if np.asarray(trace.gap)[reach].any():
         return f"hole of more than {st.learning_recording_gap_s:g} s in the recording"
-    if not np.asarray(trace.usable)[reach].all():
+    if not np.asarray(trace.eligible)[reach].all():
         return f"below {KMH_PER_MPS * st.learning_speed_min_mps:g} km/h or not eligible"
     return (
         f"within {KMH_PER_MPS * st.learning_deviation_min_mps:.3g} km/h of the profile, or part "

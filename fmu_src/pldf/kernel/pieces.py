@@ -1,0 +1,72 @@
+"""The recorded speed with the stretched pieces of the interventions inserted (section 3.4)."""
+
+from __future__ import annotations
+
+from .arrays import Floats, RouteArrays, TraceArrays, Work
+from .codes import OUTCOME_HOLE, OUTCOME_NOT_ELIGIBLE, OUTCOME_NOT_MOVED, OUTCOME_STOP
+from .interpolation import cell_at, value_at
+from .state import PldfState
+from .stretch import joined_speed, source_position, stretch_factor, stretched_position
+
+NOT_LEARNED = -1.0  # marks of a node: nothing may be learned here
+FREE = 0.0  # the driver did not intervene; 1, 2, ... = number of the intervention
+
+
+def insert_pieces(
+    st: PldfState, route: RouteArrays, trace: TraceArrays, work: Work, outcome: Floats
+) -> None:
+    """Fill ``work.a`` with the preprocessed speed and ``work.b`` with the marks of the nodes.
+
+    ``outcome`` gets, per intervention, why nothing can be learned from it, as far as that is known
+    from its piece alone (OUTCOME in codes).
+    """
+    for i in range(st.first_node, st.first_node + st.nodes):
+        work.a[i] = trace.speed_mps[i]
+        work.b[i] = FREE if trace.eligible[i] > 0.0 and trace.gap[i] <= 0.0 else NOT_LEARNED
+    for k in range(st.drive_interventions):
+        # One without length has no weights in eq. (2): pressed and released between two samples.
+        outcome[k] = OUTCOME_NOT_MOVED
+        if trace.end_m[k] > max(trace.start_m[k], float(st.first_node)):
+            outcome[k] = _insert_piece(st, trace, work, k, stretch_factor(st, route, trace, k))
+
+
+def _insert_piece(st: PldfState, trace: TraceArrays, work: Work, k: int, alpha: float) -> int:
+    """Insert the piece of intervention ``k``; return its outcome as far as the piece tells it."""
+    d_n = trace.end_m[k]
+    start = stretched_position(trace.start_m[k], d_n, alpha)
+    end = st.first_node + st.nodes - 1
+    first = max(cell_at(len(work.a), start), st.first_node)
+    last = min(cell_at(len(work.a), d_n), end)
+    hole = _largest_gap(trace, first, last) > 0.0
+    slowest = trace.speed_mps[last]
+    if first < start:
+        first += 1
+    for i in range(first, last + 1):
+        # Behind the last node recorded there is no speed to read, though the drive went on a bit.
+        d = min(source_position(float(i), d_n, alpha), float(end))
+        work.a[i] = _stretched_speed(trace, start, k, d)
+        slowest = min(slowest, work.a[i], trace.speed_mps[i])
+        if hole or trace.eligible[cell_at(len(work.a), d)] <= 0.0:
+            work.b[i] = NOT_LEARNED
+        elif work.b[i] != NOT_LEARNED:
+            work.b[i] = k + 1.0
+    if first > last:
+        return OUTCOME_NOT_MOVED
+    if hole:
+        return OUTCOME_HOLE
+    # Not eligible, unless a run with a node of it is learned.
+    return OUTCOME_STOP if slowest < st.learning_speed_min_mps else OUTCOME_NOT_ELIGIBLE
+
+
+def _largest_gap(trace: TraceArrays, first: int, last: int) -> float:
+    result = 0.0
+    for i in range(first, last + 1):
+        result = max(result, trace.gap[i])
+    return result
+
+
+def _stretched_speed(trace: TraceArrays, start: float, k: int, d: float) -> float:
+    """Eq. (2): return the joined speed of the sample recorded at ``d``."""
+    d_0 = trace.start_m[k]
+    lift = value_at(trace.speed_mps, start) - value_at(trace.speed_mps, d_0)
+    return joined_speed(value_at(trace.speed_mps, d), d, (d_0, trace.end_m[k]), lift)
