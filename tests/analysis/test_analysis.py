@@ -265,6 +265,25 @@ def test_the_command_writes_tables_and_tells_the_paper_s_numbers(
     assert "no drives.csv" in said.err
 
 
+def test_the_same_difference_for_everybody_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = [
+        (f"P{at}", phase, [a - 0.1 * (phase[0] == "B")] * 3)
+        for at, a in enumerate((0.3, 0.4, 0.5, 0.7))
+        for phase in PHASES
+    ]
+    study(tmp_path, drives((who, phase, np.round(three, 4)) for who, phase, three in rows))
+    assert main(["analyse", str(tmp_path)]) == 0
+    told = capsys.readouterr().out
+    assert "No spread: pedal, set_speed, combined" in told
+    assert "no spread" in next(line for line in told.splitlines() if "*inf" in line)
+    with (tmp_path / "analysis" / "tests.csv").open() as file:
+        (test, *_) = csv.DictReader(file)
+    assert (test["t"], test["p_t"], test["cohen_dz"]) == ("inf", "0.0", "inf")
+    assert float(test["p_wilcoxon"]) == stats.wilcoxon([1] * 4, method="asymptotic").pvalue
+
+
 def test_an_interval_of_rates_ends_at_0_and_1(tmp_path: Path) -> None:
     rates = [0.0, 0.0, 1.0, 1.0]
     half = stats.t.ppf(0.975, 3) * np.std(rates, ddof=1) / 2.0  # of the mean of four

@@ -25,6 +25,7 @@ from ..study.drive_row import DriveRow
 from ..study.phases import PHASES, Phase
 from .drives_table import check_complete, check_phase, read_drives, row_of_recording
 from .questionnaire import Questionnaire, read_questionnaire
+from .rounding import as_written
 from .statistics import Comparison, MeanInterval, compare, mean_interval
 
 SYSTEMS: Final = ("A", "B")
@@ -185,9 +186,10 @@ def mean_rates(
 ) -> FloatArray:
     """Return each participant's mean of one rate over the drives of some phases; NaN if none."""
     rates: dict[str, list[float]] = {name: [] for name in participants}
-    for drive in drives:
+    written = as_written([getattr(drive, f"{measure}_rate") for drive in drives])
+    for drive, rate in zip(drives, written.tolist(), strict=True):
         if drive.phase in phases:
-            rates[drive.participant].append(getattr(drive, f"{measure}_rate"))
+            rates[drive.participant].append(rate)
     return np.array([float(np.mean(v)) if v else np.nan for v in rates.values()])
 
 

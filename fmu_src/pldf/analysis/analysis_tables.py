@@ -60,17 +60,16 @@ def _tests(analysis: Analysis) -> list[Sequence[Cell]]:
         "t", "df", "p_t", "w", "pairs", "zeros", "p_wilcoxon", "wilcoxon_method",
         "p_wilcoxon_normal", "p_wilcoxon_corrected", "cohen_dz", "rank_biserial", "fell",
     )  # fmt: skip
-    count = len(analysis.participants)
     return [
         heading,
-        *((name, count, *_cells(comparison)) for name, comparison in analysis.comparisons.items()),
+        *((name, *_cells(comparison)) for name, comparison in analysis.comparisons.items()),
     ]
 
 
 def _cells(comparison: Comparison) -> Sequence[Cell]:
     t, ranks, difference = comparison.t, comparison.signed_rank, comparison.difference
     return (
-        comparison.mean_first, comparison.mean_second,
+        comparison.people, comparison.mean_first, comparison.mean_second,
         difference.value, difference.low, difference.high,
         t.t, t.df, t.p, ranks.w, ranks.pairs, ranks.zeros, ranks.p, ranks.method,
         ranks.p_normal, ranks.p_corrected,

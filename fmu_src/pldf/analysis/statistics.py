@@ -11,6 +11,11 @@ dropped; the exact distribution if nothing was dropped, no ranks are tied and th
 pairs; else the normal approximation, its variance corrected for ties, without continuity
 correction. (Of at most 13 pairs with ties or zeros scipy would permute the signs; the paper's rule
 stays the one that is easy to state.)
+
+Whether a difference is zero and whether two are tied is a question about the numbers as they were
+written: 0.3 - 0.2 and 0.4 - 0.3 are the same, though they differ in their 17th digit. So ``equal``
+differences are made equal before anything is computed from them, by the roundings of a double; and
+``as_written`` takes the rounding of single precision from values that have few decimals.
 """
 
 from __future__ import annotations
@@ -23,21 +28,29 @@ import scipy  # loads scipy.stats, which takes a second, when it is first used
 from numpy.typing import ArrayLike
 
 from ..kernel.arrays import FloatArray
+from .rounding import equal
 
 Method = Literal["exact", "normal"]
 
 EXACT_PAIRS_MAX: Final = 50
-# Differences (and their spread) below this are rounding, not an effect.
-ZERO: Final = 1e-12
 
 
 @dataclass(frozen=True)
 class PairedT:
-    """Paired t test: ``t`` with ``df`` degrees of freedom and its p value."""
+    """Paired t test: ``t`` with ``df`` degrees of freedom and its p value.
+
+    Differences that are all the same have no spread: ``t`` is infinite and p is 0, or t = 0 and
+    p = 1 if nothing differs.
+    """
 
     t: float
     df: int
     p: float
+
+    @property
+    def has_spread(self) -> bool:
+        """Tell whether the differences vary, or nothing differs; else the test says nothing."""
+        return bool(np.isfinite(self.t))
 
 
 @dataclass(frozen=True)
@@ -83,6 +96,7 @@ class Comparison:
         d_z: Cohen's d of the differences.
         rank_biserial: rank-biserial correlation, from -1 to 1.
         fell: people whose second value is the smaller one.
+        people: how many have both values.
     """
 
     mean_first: float
@@ -93,6 +107,7 @@ class Comparison:
     d_z: float
     rank_biserial: float
     fell: int
+    people: int
 
 
 def compare(first: ArrayLike, second: ArrayLike) -> Comparison:
@@ -106,12 +121,17 @@ def compare(first: ArrayLike, second: ArrayLike) -> Comparison:
         signed_rank(first, second),
         cohen_dz(first, second),
         rank_biserial(first, second),
-        int((d > ZERO).sum()),
+        int((d > 0.0).sum()),
+        len(d),
     )
 
 
 def differences(first: ArrayLike, second: ArrayLike) -> FloatArray:
-    """Return first minus second; ValueError unless these are at least 2 pairs of numbers."""
+    """Return first minus second, equal ones made the same bits and zeros zero.
+
+    Raises:
+        ValueError: these are not at least 2 pairs of numbers.
+    """
     a, b = np.asarray(first, float), np.asarray(second, float)
     if a.ndim != 1 or a.shape != b.shape or len(a) < 2:
         raise ValueError(
@@ -119,24 +139,23 @@ def differences(first: ArrayLike, second: ArrayLike) -> FloatArray:
         )
     if not (np.isfinite(a).all() and np.isfinite(b).all()):
         raise ValueError("every person needs both values; leave out people with a missing one")
-    difference: FloatArray = a - b
-    return difference
+    return equal(a - b, max(np.abs(a).max(), np.abs(b).max()))
 
 
 def paired_t(first: ArrayLike, second: ArrayLike) -> PairedT:
     """Paired t test. Without any spread: t = 0 and p = 1 if nothing differs, else infinite t."""
     d = differences(first, second)
-    if _spread(d) <= 0.0:
+    if _is_constant(d):
         t = _without_spread(d)
         return PairedT(t, len(d) - 1, 0.0 if t else 1.0)
-    result = scipy.stats.ttest_rel(np.asarray(first, float), np.asarray(second, float))
+    result = scipy.stats.ttest_1samp(d, 0.0)
     return PairedT(float(result.statistic), int(result.df), float(result.pvalue))
 
 
 def signed_rank(first: ArrayLike, second: ArrayLike) -> SignedRank:
     """Wilcoxon signed rank test by the rule of this module; p = 1 if nothing differs."""
     d = differences(first, second)
-    kept = _not_zero(d)
+    kept = d[d != 0.0]
     zeros = len(d) - len(kept)
     if not len(kept):
         return SignedRank(0.0, 0, zeros, 1.0, "normal", 1.0, 1.0)
@@ -166,13 +185,13 @@ def _wilcoxon(
 def cohen_dz(first: ArrayLike, second: ArrayLike) -> float:
     """Mean difference in standard deviations of the differences; 0 if nothing differs."""
     d = differences(first, second)
-    spread = _spread(d)
-    return float(d.mean() / spread) if spread > 0.0 else _without_spread(d)
+    return _without_spread(d) if _is_constant(d) else float(d.mean() / np.std(d, ddof=1))
 
 
 def rank_biserial(first: ArrayLike, second: ArrayLike) -> float:
     """Share of the rank sum of falls minus that of rises, -1..1; 0 if nothing differs."""
-    kept = _not_zero(differences(first, second))
+    d = differences(first, second)
+    kept = d[d != 0.0]
     if not len(kept):
         return 0.0
     ranks = scipy.stats.rankdata(np.abs(kept))
@@ -183,26 +202,15 @@ def mean_interval(values: ArrayLike, level: float = 0.95) -> MeanInterval:
     """Mean with its t interval (normally distributed mean), from at least 2 values."""
     x = np.asarray(values, float)
     quantile = float(scipy.stats.t.ppf(0.5 + 0.5 * level, len(x) - 1))
-    mean, half = float(x.mean()), quantile * _standard_error(x)
+    mean, half = float(x.mean()), quantile * float(np.std(x, ddof=1) / np.sqrt(len(x)))
     return MeanInterval(mean, mean - half, mean + half)
 
 
-def _not_zero(d: FloatArray) -> FloatArray:
-    kept: FloatArray = d[np.abs(d) > ZERO]
-    return kept
-
-
-def _standard_error(values: FloatArray) -> float:
-    return float(np.std(values, ddof=1) / np.sqrt(len(values)))
-
-
-def _spread(d: FloatArray) -> float:
-    """Return the standard deviation of differences, 0 if it is but rounding."""
-    spread = float(_standard_error(d) * np.sqrt(len(d)))
-    return spread if spread > ZERO else 0.0
+def _is_constant(d: FloatArray) -> bool:
+    """Tell whether all differences are the same; their standard deviation may be 1e-17 then."""
+    return bool((d == d[0]).all())
 
 
 def _without_spread(d: FloatArray) -> float:
     """Return what mean by spread is if all differences are the same."""
-    mean = float(d.mean())
-    return float(np.copysign(np.inf, mean)) if abs(mean) > ZERO else 0.0
+    return float(np.copysign(np.inf, d[0])) if d[0] else 0.0

@@ -124,8 +124,7 @@ def _means(analysis: Analysis) -> Table:
 def _tests(analysis: Analysis) -> Table:
     title = "Two-sided tests and effect sizes (positive: B is lower)"
     table = Table(title=title, box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    df = next(iter(analysis.comparisons.values())).t.df
-    for heading in ("", f"t({df})", "p", "W", "n", "p", "by", "d_z", "r"):
+    for heading in ("", "n", "t", "p", "W", "pairs", "p", "by", "d_z", "r"):
         justify: Literal["left", "right"] = "right" if heading else "left"
         table.add_column(heading, justify=justify, no_wrap=True)
     for measure, comparison in analysis.comparisons.items():
@@ -133,8 +132,9 @@ def _tests(analysis: Analysis) -> Table:
         used = TESTS[measure].kind if measure in TESTS else ""
         table.add_row(
             _NAMES[measure].partition(",")[0],
+            str(comparison.people),
             f"{'*' if used == 't' else ''}{t.t:.2f}",
-            f"{t.p:.2g}",
+            f"{t.p:.2g}" if t.has_spread else "no spread",
             f"{'*' if used == 'wilcoxon' else ''}{ranks.w:g}",
             str(ranks.pairs),
             f"{ranks.p:.2g}",
@@ -147,6 +147,11 @@ def _tests(analysis: Analysis) -> Table:
 
 def _remarks(analysis: Analysis) -> list[str]:
     told = [f"Rates from {analysis.source}. Paper: {DRIVERS} drivers; * its test."]
+    if same := [name for name, found in analysis.comparisons.items() if not found.t.has_spread]:
+        told.append(
+            f"No spread: {', '.join(same)}; A - B is the same for everybody, so t and d_z are "
+            "infinite and say nothing."
+        )
     answers = analysis.questionnaire
     if answers:
         alphas = [f"{scale} {answers.reliability(scale):.2f}" for scale in answers.scores]
