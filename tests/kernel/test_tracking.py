@@ -203,3 +203,15 @@ def test_a_car_that_stands_where_its_profile_falls_steeply_drives_on() -> None:
     car.step(lever_resume=1)
     car.run(10.0)
     assert car.speed_mps > 5.0
+
+
+def test_a_raised_set_speed_holds_up_to_the_end_of_the_route() -> None:
+    """There is no sign at its end: the last limit and the set speed go on."""
+    car = driving(road(2000.0), 27.0)
+    for _ in range(2):
+        car.tip("lever_up_long")
+    while car.s_m < 1000.0:
+        car.step()
+    while car.s_m < 1998.0:
+        assert car.speed_mps == pytest.approx(110.0 * KMH, abs=0.01)
+        car.step()

@@ -55,7 +55,7 @@ def _adopt_in_limit(st: PldfState, drive: Drive, first: int, last: int) -> None:
         if value > 0.0:
             _adopt_series(st, drive, node, end, last)
         elif before <= 0.0:
-            ends_m = (float(_place_of(st, trace, node)), float(behind))
+            ends_m = (float(_place_of(st, trace, node)), behind - 1.0)
             _note(st, following, ends_m, (0.0, 0.0), OUTCOME_TAKEN_BACK)
         before = value
         node = press
@@ -102,14 +102,14 @@ def _adopt_series(st: PldfState, drive: Drive, node: int, end: int, last: int) -
     first = _first_cell(st, drive, node)
     if end == st.first_node + st.nodes - 1:
         end = _end_of_limit(route, end, nodes - 1)
-    outcome = OUTCOME_NOT_ELIGIBLE
-    if trace.eligible[_place_of(st, trace, node)] > 0.0:
-        outcome = OUTCOME_LEARNED
+    ends_m = (float(first), min(end + 1.0, nodes - 1.0))
+    if trace.eligible[_place_of(st, trace, node)] <= 0.0:
+        _note(st, following, ends_m, (wish, 0.0), OUTCOME_NOT_ELIGIBLE)
+    else:
+        _note(st, following, ends_m, (wish, value), OUTCOME_LEARNED)
         for cell in range(first, end + 1):
             if cell > last or trace.eligible[cell] > 0.0:
                 following.offset_mps[cell] = value
-    ends_m = (float(first), min(end + 1.0, nodes - 1.0))
-    _note(st, following, ends_m, (wish, value), outcome)
 
 
 def _note(
@@ -139,14 +139,14 @@ def _first_cell(st: PldfState, drive: Drive, node: int) -> int:
     """Return the first cell of a series whose first node is ``node``.
 
     If the lever was moved soon after the sign, or before the car had settled at the new speed, the
-    driver meant the whole limit. A sign counts if the recording knows of both its sides.
+    driver meant the whole limit. A limit whose beginning was not recorded has no sign.
     """
     route, profile, trace, _ = drive
     sign = node
     while sign > 0 and route.limit_mps[sign - 1] == route.limit_mps[node]:
         sign -= 1
     moved = max(_place_of(st, trace, node), sign)
-    if sign <= st.first_node:
+    if sign < st.first_node:
         return moved
     since_sign_s = trace.time_s[moved] - trace.time_s[sign]
     settled = sign
