@@ -39,7 +39,7 @@ from . import loop
 from .drive_row import DriveRow
 from .loop import ARRIVED, STOOD_STILL, Ends, ModelArrays, Models, Rows
 from .participants import DriveResult, Participant, StudySettings, order_of
-from .phases import HANDS_OFF, PHASES, PREFERENCE, Phase, seed_of_drive
+from .phases import HANDS_OFF, PHASES, PREFERENCE, SCRIPT, Phase, seed_of_drive
 
 Packed = NDArray[np.void]
 
@@ -113,7 +113,7 @@ class Simulation:
         person = self.person(participant)
         results = []
         for number, phase in enumerate(order_of(self.settings, participant)):
-            result = self._drive(person, phase, number, stored)
+            result = self.drive_once(person, phase, number, stored)
             results.append(result)
             if result.iteration is not None:
                 stored = stored.with_iteration(result.iteration)
@@ -132,7 +132,7 @@ class Simulation:
         wish = zeros(WishArrays, self.nodes)
         st = pack(model.record)
         self.code["prepare_wish"](st[0], self.route, wish, zeros(Work, self.nodes))
-        return Person(participant, model, wish)
+        return Person(participant, model, wish, zeros(ScriptArrays, 0))
 
     def followed(self, stored: StoredProfile, phase: Phase) -> ProfileArrays:
         """Return new arrays with the profile that a drive of ``phase`` follows."""
@@ -143,12 +143,13 @@ class Simulation:
             self.code["adopt_learned"](st[0], self.route, profile, zeros(Work, self.nodes))
         return profile
 
-    def _drive(
+    def drive_once(
         self, person: Person, phase: Phase, number: int, stored: StoredProfile
     ) -> DriveResult:
+        """Drive ``phase`` as the drive with this number, from 0, following ``stored``."""
         arrays = ModelArrays(
             wish=person.wish,
-            script=zeros(ScriptArrays, 0),
+            script=person.script,
             route=self.route,
             profile=self.followed(stored, phase),
             trace=zeros(TraceArrays, self.nodes),
@@ -192,16 +193,18 @@ class Simulation:
 
 
 class Person(NamedTuple):
-    """A participant with the driver model and the wished speed."""
+    """A participant with the driver model, and the wished speed or a script to follow."""
 
     participant: Participant
     model: ScriptedDriver
     wish: WishArrays
+    script: ScriptArrays
 
     def packed(self, phase: Phase, number: int) -> Packed:
         """Return the driver's record for the drive with this number, from 0."""
         st = pack(self.model.record)
-        st["kind"] = PREFERENCE if phase.intervenes else HANDS_OFF
+        kind = SCRIPT if len(self.script.at) else PREFERENCE
+        st["kind"] = kind if phase.intervenes else HANDS_OFF
         st["seed"] = seed_of_drive(self.participant.seed, number)
         return st
 
