@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pldf.analysis.analysis import StudyFolder, analyse
-from pldf.analysis.questionnaire import LAAN, PROFILE, read_questionnaire
+from pldf.analysis.questionnaires import LAAN, PROFILE, read_questionnaire
 from pldf.cli import main
 from pldf.errors import ModelError
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE, STANDBY
@@ -203,7 +203,11 @@ def test_reversed_items_reliability_and_answers_after_each_drive(tmp_path: Path)
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        ({("P3", "B", "laan_4"): ""}, "line 7, participant P3, system B, laan_4: '' is not the"),
+        ({("P3", "B", "laan_4"): "2.5"}, "line 7, participant P3, system B, laan_4: '2.5' is not"),
+        (
+            {("P3", "B", "laan_4"): "good"},
+            "line 7, participant P3, system B, laan_4: 'good' is not",
+        ),
         (
             {("P3", "B", "laan_4"): "-2"},
             "P3, system B, laan_4: '-2' is not the number of a box",
@@ -211,7 +215,8 @@ def test_reversed_items_reliability_and_answers_after_each_drive(tmp_path: Path)
         ({("P3", "B", "profile_2"): "6"}, "profile_2: '6' is not the number of a box"),
         ({("P3", "B", "system"): "A"}, "line 7, participant P3, system A: answered in line 6"),
         ({("P3", "B", "system"): "C"}, "line 7, participant P3, system: 'C' is not a system"),
-        ({("P3", "B", "participant"): "P9"}, "participant P3 has no answers (usefulness)"),
+        ({("P3", "B", "participant"): "P9"}, "answers of P9, of whom there are no drives"),
+        ({("P3", "B", "participant"): ""}, "line 7, system B, participant: '' is not the name"),
     ],
 )
 def test_bad_answers_are_named(
@@ -232,6 +237,52 @@ def test_questionnaires_with_columns_or_people_too_few_or_too_many(tmp_path: Pat
     assert "answers of P8, of whom there are no drives" in refusal(source)
     path.write_text("participant,system\n")
     assert "no items" in refusal(source)
+
+
+def test_who_has_no_score_leaves_the_comparison_of_that_scale_only(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = study(tmp_path)
+    lost = dict.fromkeys((("P3", "B", "laan_2"), ("P3", "B", "laan_4"), ("P4", "A", "laan_1")), "")
+    lost |= dict.fromkeys((("P1", "A", item) for item in PROFILE), "-9")
+    answers(tmp_path, lost)
+    found = analyse(source)
+    counts = {name: comparison.people for name, comparison in found.comparisons.items()}
+    assert counts == {
+        "pedal": 4, "set_speed": 4, "combined": 4,
+        "usefulness": 4, "satisfying": 3, "speed_profile": 3,
+    }  # fmt: skip
+    told = {note.place: note for note in found.notes if note.severity == "warning"}
+    assert told["satisfying"].text == "no score of P3 (B)"
+    assert "the other 3 participants" in told["satisfying"].consequence
+    b = found.per_participant("satisfying", "B")
+    assert np.isnan(b).tolist() == [False, False, True, False]
+
+    assert main(["analyse", str(tmp_path)]) == 0
+    said = capsys.readouterr()
+    assert "warning: " in said.err
+    assert "no score of P1 (A)" in said.err
+    assert "satisfying 1.00 (n = 7)" in said.out
+    with (tmp_path / "analysis" / "participants.csv").open() as file:
+        rows = {(row["participant"], row["system"]): row for row in csv.DictReader(file)}
+    assert rows["P3", "B"]["satisfying"] == rows["P1", "A"]["speed_profile"] == ""
+    assert float(rows["P3", "B"]["usefulness"]) == 2.0
+    with (tmp_path / "analysis" / "tests.csv").open() as file:
+        assert [int(row["participants"]) for row in csv.DictReader(file)] == [4, 4, 4, 4, 3, 3]
+    with (tmp_path / "analysis" / "items.csv").open() as file:
+        items = {row["item"]: row for row in csv.DictReader(file)}
+    assert (items["laan_1"]["participants"], items["laan_3"]["participants"]) == ("3", "4")
+
+
+def test_a_scale_that_one_person_answered_is_not_compared(tmp_path: Path) -> None:
+    source = study(tmp_path)
+    path = answers(tmp_path)
+    path.write_text("\n".join(path.read_text().splitlines()[:4]) + "\n")  # P1; P2 for A only
+    found = analyse(source)
+    assert list(found.comparisons) == ["pedal", "set_speed", "combined"]
+    (told, *_) = [note for note in found.notes if note.place == "satisfying"]
+    assert told.text == "no score of P2 (B), P3 (A, B), P4 (A, B)"
+    assert "1 participants are left, so A and B are not compared" in told.consequence
 
 
 def test_the_command_writes_tables_and_tells_the_paper_s_numbers(

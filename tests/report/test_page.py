@@ -31,7 +31,7 @@ def test_numbers_texts_and_parameters(html: str, contents: Contents) -> None:
         "body.mass_kg",
         "wish.offset_mps",
         "count = 3",
-        "<th>Satisfying (&minus;2 … +2)</th><td>&minus;1.00</td><td>1.17</td>",
+        "<th>Satisfying (&minus;2 … +2)</th><td>3</td><td>&minus;1.00</td><td>1.17</td>",
     ):
         assert text in html, text
 

@@ -7,8 +7,8 @@ and B2), as in the paper. Drives without interventions (A3, B3) are reported but
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
@@ -16,6 +16,7 @@ from typing import Any, Final
 import numpy as np
 
 from ..errors import ModelError
+from ..findings import Finding
 from ..function import DrivingFunction
 from ..kernel.arrays import FloatArray
 from ..recordings.interventions import Rates
@@ -24,7 +25,7 @@ from ..roads import Route
 from ..study.drive_row import DriveRow
 from ..study.phases import PHASES, Phase
 from .drives_table import check_complete, check_phase, read_drives, row_of_recording
-from .questionnaire import Questionnaire, read_questionnaire
+from .questionnaires import Questionnaire, SurveyMap, read_questionnaire
 from .rounding import as_written
 from .statistics import Comparison, MeanInterval, compare, mean_interval
 
@@ -47,11 +48,18 @@ class StudyFolder:
         folder: with ``drives.csv`` or ``recordings/``, and ``questionnaire.csv`` if there is one.
         route: the route driven, for recordings that lack columns.
         without: participants to leave out.
+        survey: what columns and answers of the questionnaire mean.
     """
 
     folder: Path
     route: Route | None = None
     without: frozenset[str] = frozenset()
+    survey: SurveyMap = field(default_factory=SurveyMap)
+
+    @property
+    def questionnaire(self) -> Path:
+        """The file with the answers, if there is one."""
+        return self.folder / self.survey.file
 
     @cached_property
     def study_file(self) -> Mapping[str, Any]:
@@ -139,6 +147,7 @@ class Analysis:
         comparisons: measure (a rate, or a scale of the questionnaire) -> A against B.
         questionnaire: None if there is none.
         source: file or folder that the rates come from.
+        notes: what one has to know to trust the numbers.
     """
 
     drives: Sequence[DriveRow]
@@ -147,6 +156,7 @@ class Analysis:
     comparisons: Mapping[str, Comparison]
     questionnaire: Questionnaire | None
     source: Path
+    notes: tuple[Finding, ...] = ()
 
     @property
     def needed(self) -> tuple[str, ...]:
@@ -173,11 +183,11 @@ class Analysis:
         return MeanInterval(mean, max(interval.low, 0.0), min(interval.high, 1.0))
 
     def per_participant(self, measure: str, system: str) -> FloatArray:
-        """Return what each participant counts with, in the order of ``participants``."""
+        """Return what each participant counts with, in their order; NaN for no score."""
         if measure not in RATES:
             assert self.questionnaire is not None
             scores = self.questionnaire.scores[measure]
-            return np.array([scores[name, system] for name in self.participants])
+            return np.array([scores.get((name, system), np.nan) for name in self.participants])
         return mean_rates(self.drives, self.participants, measure, self.compared[system])
 
 
@@ -215,11 +225,43 @@ def analyse(study: StudyFolder, reading: Reading = lambda _done, _all: None) -> 
     measures = (*RATES, *(answers.scores if answers else ()))
     if not all(compared.values()):
         raise ModelError(f"{study.folder}: no drives with both systems, so nothing to compare")
+    values = {m: [untested.per_participant(m, system) for system in SYSTEMS] for m in measures}
+    whole = {measure: np.isfinite(ab).all(axis=0) for measure, ab in values.items()}
     comparisons = {
-        name: compare(untested.per_participant(name, "A"), untested.per_participant(name, "B"))
-        for name in measures
+        measure: compare(*(values[measure][at][both] for at in range(len(SYSTEMS))))
+        for measure, both in whole.items()
+        if both.sum() >= PARTICIPANTS_MIN
     }
-    return replace(untested, comparisons=comparisons)
+    left_out = _left_out(study, participants, values) if answers else ()
+    notes = (*(answers.notes if answers else ()), *left_out)
+    return replace(untested, comparisons=comparisons, notes=notes)
+
+
+def _left_out(
+    study: StudyFolder, participants: Sequence[str], values: Mapping[str, Sequence[FloatArray]]
+) -> Iterator[Finding]:
+    """Yield, per scale, who has no score and what that costs.
+
+    Args:
+        study: where the questionnaire lies.
+        participants: the people.
+        values: measure -> one number per participant, for A and for B.
+    """
+    for scale in (name for name in values if name not in RATES):
+        missing = [
+            f"{name} ({', '.join(lacking)})"
+            for name, *ab in zip(participants, *values[scale], strict=True)
+            if (lacking := [s for s, score in zip(SYSTEMS, ab, strict=True) if np.isnan(score)])
+        ]
+        count = len(participants) - len(missing)
+        if missing:
+            yield Finding(
+                "warning", str(study.questionnaire), 0, scale, f"no score of {', '.join(missing)}",
+                f"A and B are compared for the other {count} participants"
+                if count >= PARTICIPANTS_MIN
+                else f"{count} participants are left, so A and B are not compared",
+                "all drives count all the same",
+            )  # fmt: skip
 
 
 def _drives(study: StudyFolder, reading: Reading) -> tuple[list[DriveRow], Path]:
@@ -241,23 +283,14 @@ def _drives(study: StudyFolder, reading: Reading) -> tuple[list[DriveRow], Path]
 
 
 def _questionnaire(study: StudyFolder, participants: Collection[str]) -> Questionnaire | None:
-    path = study.folder / "questionnaire.csv"
+    path = study.questionnaire
     if not path.exists():
         return None
-    answers = read_questionnaire(path, study.without)
-    for scale, scores in answers.scores.items():
-        for participant in participants:
-            for system in SYSTEMS:
-                if (participant, system) not in scores:
-                    raise ModelError(
-                        f"{path}: participant {participant} has no answers ({scale}) for system "
-                        f"{system}; add them or leave the participant out with "
-                        f"--without {participant}"
-                    )
-        strangers = {participant for participant, _ in scores}.difference(participants)
-        if strangers:
-            raise ModelError(
-                f"{path}: answers of {', '.join(sorted(strangers))}, of whom there are no drives; "
-                "leave them out with --without"
-            )
+    answers = read_questionnaire(path, study.without, study.survey)
+    answered = {name for values in answers.items.values() for name, _ in values}
+    if strangers := answered.difference(participants):
+        raise ModelError(
+            f"{path}: answers of {', '.join(sorted(strangers))}, of whom there are no drives; "
+            "leave them out with --without"
+        )
     return answers

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isnan
 from pathlib import Path
 
 import numpy as np
 
 from ..files.tables import Cell, write_table
-from .analysis import RATES, Analysis
+from .analysis import PARTICIPANTS_MIN, RATES, Analysis
 from .statistics import Comparison, compare
 
 
@@ -30,7 +31,7 @@ def write_tables(analysis: Analysis, folder: Path) -> list[Path]:
 
 def _participants(analysis: Analysis) -> list[Sequence[Cell]]:
     """One row per participant and system: what entered the tests."""
-    measures = list(analysis.comparisons)
+    measures = [*RATES, *(analysis.questionnaire.scores if analysis.questionnaire else ())]
     names = [f"{name}_rate" if name in RATES else name for name in measures]
     rows: list[Sequence[Cell]] = [("participant", "system", *names)]
     values = {
@@ -38,8 +39,13 @@ def _participants(analysis: Analysis) -> list[Sequence[Cell]]:
         for system in "AB"
     }
     for at, participant in enumerate(analysis.participants):
-        rows += [(participant, system, *values[system][at].tolist()) for system in "AB"]
+        rows += [(participant, system, *map(_cell, values[system][at])) for system in "AB"]
     return rows
+
+
+def _cell(value: float) -> Cell:
+    """Return a cell, empty for what is not known."""
+    return "" if isnan(value) else float(value)
 
 
 def _phases(analysis: Analysis) -> list[Sequence[Cell]]:
@@ -78,13 +84,19 @@ def _cells(comparison: Comparison) -> Sequence[Cell]:
 
 
 def _items(analysis: Analysis) -> list[Sequence[Cell]]:
-    """One row per item of the questionnaire, scored; higher is better."""
+    """One row per item of the questionnaire, scored; of those who answered it in A and B."""
     assert analysis.questionnaire is not None
-    rows: list[Sequence[Cell]] = [("item", "mean_a", "mean_b", "w", "pairs", "p_wilcoxon")]
+    rows: list[Sequence[Cell]] = [
+        ("item", "participants", "mean_a", "mean_b", "w", "pairs", "p_wilcoxon")
+    ]
     for item, answers in analysis.questionnaire.items.items():
-        a, b = ([answers[name, system] for name in analysis.participants] for system in "AB")
-        ranks = (comparison := compare(a, b)).signed_rank
-        rows.append(
-            (item, comparison.mean_first, comparison.mean_second, ranks.w, ranks.pairs, ranks.p)
-        )
+        both = [n for n in analysis.participants if answers.keys() >= {(n, "A"), (n, "B")}]
+        if len(both) < PARTICIPANTS_MIN:
+            rows.append((item, len(both), "", "", "", "", ""))
+            continue
+        a, b = ([answers[name, system] for name in both] for system in "AB")
+        found = compare(a, b)
+        ranks = found.signed_rank
+        means = found.mean_first, found.mean_second
+        rows.append((item, len(both), *means, ranks.w, ranks.pairs, ranks.p))
     return rows

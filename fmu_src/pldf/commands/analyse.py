@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import sys
+from math import isnan
 from pathlib import Path
 from typing import Final, Literal
 
@@ -13,7 +15,7 @@ from rich.table import Table
 from ..analysis.analysis import RATES, Analysis, StudyFolder, analyse
 from ..analysis.analysis_tables import write_tables
 from ..analysis.published import DRIVERS, TESTS, published_means
-from ..analysis.questionnaire import SCALES
+from ..analysis.questionnaires import SCALES, Questionnaire
 from .shared.progress import progress_bar
 from .shared.road import add_road, chosen_road
 
@@ -70,6 +72,9 @@ def run(options: argparse.Namespace) -> None:
     with progress_bar("read", 1.0, "recordings") as bar:  # analyse tells how many there are
         task = bar.task_ids[0]
         analysis = analyse(study, lambda done, all_: bar.update(task, completed=done, total=all_))
+    for finding in analysis.notes:
+        if finding.severity == "warning":
+            print(f"warning: {finding}", file=sys.stderr)
     written = write_tables(analysis, options.out or options.folder / "analysis")
     console = Console()
     console.print(_means(analysis))
@@ -104,8 +109,10 @@ def _show(analysis: Analysis, study: StudyFolder, options: argparse.Namespace) -
 
 def _means(analysis: Analysis) -> Table:
     title = f"System A against B, means of {len(analysis.participants)} participants"
+    if any(found.people < len(analysis.participants) for found in analysis.comparisons.values()):
+        title += " (n: with both values)"
     table = Table(title=title, box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    for heading in ("", "A", "B", "A - B", "95 % interval", "paper A", "paper B"):
+    for heading in ("", "n", "A", "B", "A - B", "95 % interval", "paper A", "paper B"):
         table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
     for measure, comparison in analysis.comparisons.items():
         unit = 100.0 if measure in RATES else 1.0
@@ -114,6 +121,7 @@ def _means(analysis: Analysis) -> Table:
         values = (comparison.mean_first, comparison.mean_second, change.value)
         table.add_row(
             _NAMES[measure],
+            str(comparison.people),
             *(f"{unit * value:.2f}" for value in values),
             f"{unit * change.low:.2f} to {unit * change.high:.2f}",
             *(f"{unit * value:.2f}" for value in paper),
@@ -154,11 +162,16 @@ def _remarks(analysis: Analysis) -> list[str]:
         )
     answers = analysis.questionnaire
     if answers:
-        alphas = [f"{scale} {answers.reliability(scale):.2f}" for scale in answers.scores]
-        told.append(f"Cronbach's alpha: {', '.join(alphas)}.")
+        told.append(f"Cronbach's alpha: {', '.join(_alpha(answers, s) for s in answers.scores)}.")
         absent = [scale for scale in SCALES if scale not in answers.scores]
         if absent:
-            told.append(f"Not in questionnaire.csv: {', '.join(absent)}.")
+            told.append(f"Not in the questionnaire: {', '.join(absent)}.")
     else:
         told.append("No questionnaire.csv, so no scores.")
     return told
+
+
+def _alpha(answers: Questionnaire, scale: str) -> str:
+    """Return the reliability of a scale with the number of questionnaires that it is from."""
+    alpha, count = answers.reliability(scale), answers.complete[scale].shape[1]
+    return f"{scale} {'not defined' if isnan(alpha) else f'{alpha:.2f}'} (n = {count})"

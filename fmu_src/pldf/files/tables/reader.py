@@ -96,11 +96,28 @@ def read_table(
         ModelError: the file cannot be read.
         TableError: it cannot be used; with file, line, column, value and the way out.
     """
+    return parse_table(_content(path), Path(path), form, without)
+
+
+def read_header(path: str | os.PathLike[str]) -> tuple[str, ...]:
+    """Return the names of the columns of the table in the file ``path``, as they stand there.
+
+    Raises:
+        ModelError: the file cannot be read.
+        TableError: it has no header.
+    """
+    data = _content(path)
+    _, header = next(_records(_lines(data, Path(path)), Path(path), []), (0, []))
+    if not header:
+        raise TableError(Path(path), [Fault(0, "", "no header")])
+    return tuple(name.strip() for name in header)
+
+
+def _content(path: str | os.PathLike[str]) -> bytes:
     try:
-        data = Path(path).read_bytes()
+        return Path(path).read_bytes()
     except OSError as error:
         raise ModelError(f"{path}: cannot be read ({reason(error)}); check the path") from error
-    return parse_table(data, Path(path), form, without)
 
 
 def parse_table(
