@@ -174,10 +174,11 @@ def test_a_row_per_person_with_a_column_per_system(tmp_path: Path) -> None:
 
 
 def test_an_empty_row_is_passed_over_and_told(tmp_path: Path) -> None:
-    found = read(tmp_path, laan({"P1,A": BOXES, ",": ("",) * 9, " , ": ("NA",) * 9}))
-    assert [note.text for note in found.notes] == [
-        "2 rows without participant and answers passed over"
-    ]
+    found = read(
+        tmp_path,
+        laan({"P1,A": BOXES, ",": ("",) * 9, " , ": ("NA",) * 9, "P2,screening": ("",) * 9}),
+    )
+    assert [note.text for note in found.notes] == ["3 rows without any answer passed over"]
     assert set(found.items["laan_1"]) == {("P1", "A")}
 
 

@@ -114,11 +114,8 @@ def _counts(table: Table, row: int, names: SurveyMap) -> bool:
 
 
 def _is_empty(table: Table, row: int, columns: Columns, names: SurveyMap) -> bool:
-    """Tell whether nobody answered anything in ``row``, as in an export's preview of a survey."""
-    cells = (table.texts[name][row] for name in columns.asked)
-    return not table.texts[columns.participant][row] and all(
-        plain(cell) in names.missing for cell in cells
-    )
+    """Tell whether nothing is answered in ``row``, such as that of a visit without questions."""
+    return all(plain(table.texts[name][row]) in names.missing for name in columns.asked)
 
 
 def _notes(table: Table, heading: int, counted: int, filled: int) -> Iterator[Finding]:
@@ -130,7 +127,7 @@ def _notes(table: Table, heading: int, counted: int, filled: int) -> Iterator[Fi
     if others := len(table) - heading - counted:
         yield _note(table.path, f"{others} rows passed over, as the mapping file wants ('only')")
     if empty := counted - filled:
-        yield _note(table.path, f"{empty} rows without participant and answers passed over")
+        yield _note(table.path, f"{empty} rows without any answer passed over")
 
 
 def _note(path: Path, text: str, place: str = "") -> Finding:
