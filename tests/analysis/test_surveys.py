@@ -6,7 +6,8 @@ scale with system B, P04 two items on the speed profile with system A.
 
 from __future__ import annotations
 
-import tomllib
+import csv
+import shutil
 from pathlib import Path
 
 import pytest
@@ -15,8 +16,10 @@ from pldf.analysis.questionnaires import (
     PROFILE,
     Questionnaire,
     read_questionnaire,
-    survey_map,
+    read_survey_map,
 )
+from pldf.cli import main
+from pldf.errors import ModelError
 
 SURVEYS = Path(__file__).parents[2] / "examples" / "surveys"
 TOOLS = ("qualtrics", "redcap", "redcap_labels")
@@ -38,8 +41,7 @@ def scored(item: str, box: float) -> float:
 
 
 def read(tool: str) -> Questionnaire:
-    path = SURVEYS / f"{tool}.toml"
-    names = survey_map(tomllib.loads(path.read_text(encoding="utf-8"))["questionnaire"], path)
+    names = read_survey_map(SURVEYS / f"{tool}.toml")
     return read_questionnaire(SURVEYS / names.file, (), names)
 
 
@@ -80,3 +82,42 @@ def test_it_is_told_how_an_export_was_read(tool: str) -> None:
     told = " | ".join(note.text for note in read(tool).notes if note.line == 0)
     for text in TOLD[tool]:
         assert text in told
+
+
+def test_a_study_with_an_export_and_its_map(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = ["participant,phase,pedal_rate,set_speed_rate,combined_rate"]
+    lines += [
+        f"{who},{phase},{0.1 * int(who[2]) + 0.05 * (phase[0] == 'A'):.2f},0.2,0.3"
+        for who in ("P01", "P02", "P03", "P04")
+        for phase in ("A1", "A2", "B1", "B2")
+    ]
+    (tmp_path / "drives.csv").write_text("\n".join((*lines, "")))
+    shutil.copy(SURVEYS / "qualtrics.csv", tmp_path)
+    assert main(["analyse", str(tmp_path), "--map", str(SURVEYS / "qualtrics.toml")]) == 0
+    said = capsys.readouterr()
+    assert "Its first 3 lines are the header" in said.out
+    assert "speed_profile: no score of P04 (A)" in said.err
+    with (tmp_path / "analysis" / "tests.csv").open() as file:
+        counts = {row["measure"]: row["participants"] for row in csv.DictReader(file)}
+    assert (counts["pedal"], counts["usefulness"], counts["speed_profile"]) == ("4", "4", "3")
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("[questionnaire", "no TOML file"),
+        ("questionnaire = 3", "3 is not a table"),
+        ('[questionnaire]\nitems = "laan_1"', "items: 'laan_1' is not a table"),
+    ],
+)
+def test_a_map_that_is_none(tmp_path: Path, text: str, told: str) -> None:
+    path = tmp_path / "map.toml"
+    path.write_text(text)
+    with pytest.raises(ModelError, match=told):
+        read_survey_map(path)
+    with pytest.raises(ModelError, match="cannot be read"):
+        read_survey_map(tmp_path / "none.toml")
+    path.write_text("[columns]\n")
+    assert read_survey_map(path).file == "questionnaire.csv"

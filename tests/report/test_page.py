@@ -63,5 +63,28 @@ def test_a_study_without_recordings_has_a_report(
     assert "no recordings" in text
 
 
+def test_a_report_without_spread_and_with_missing_answers(tmp_path: Path) -> None:
+    lines = ["participant,phase,pedal_rate,set_speed_rate,combined_rate"]
+    for who, a in (("P1", 0.3), ("P2", 0.4), ("P3", 0.7)):
+        b = a - 0.1
+        lines += [f"{who},{phase},{a},{a},{a}" for phase in ("A1", "A2")]
+        lines += [f"{who},{phase},{b:.1f},{b:.1f},{b:.1f}" for phase in ("B1", "B2")]
+    (tmp_path / "drives.csv").write_text("\n".join(lines))
+    answers = ["participant,system,laan_2,laan_4,laan_6,laan_8"]
+    answers += ["P1,A,4,4,2,2", "P1,B,2,2,4,5", "P2,A,3,4,2,3", "P2,B,2,1,5,4"]
+    answers += ["P3,A,5,4,1,2", "P3,B,3,NA,,4"]
+    (tmp_path / "questionnaire.csv").write_text("\n".join(answers))
+    report = tmp_path / "report.html"
+    assert main(["analyse", str(tmp_path), "--report", str(report)]) == 0
+    text = report.read_text(encoding="utf-8")
+    assert "t(2): no spread, all differences are the same" in text
+    assert text.count("<td>no spread</td>") == 3  # d_z of the three rates
+    assert "<th>Satisfying (&minus;2 … +2)</th><td>2</td>" in text
+    assert ", n = 5</td>" in text  # alpha
+    told = "line 7, participant P3, system B: 2 of 4 items of satisfying not answered"
+    assert told in text
+    assert str(tmp_path) not in re.sub(r"<script.*?</script>", "", text, flags=re.DOTALL)
+
+
 def test_plotly_brings_its_licence(html: str) -> None:
     assert re.search(r"plotly\.js v[\d.]+\s.{0,200}Licensed under the MIT license", html, re.S)

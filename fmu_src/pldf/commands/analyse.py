@@ -15,7 +15,7 @@ from rich.table import Table
 from ..analysis.analysis import RATES, Analysis, StudyFolder, analyse
 from ..analysis.analysis_tables import write_tables
 from ..analysis.published import DRIVERS, TESTS, published_means
-from ..analysis.questionnaires import SCALES, Questionnaire
+from ..analysis.questionnaires import SCALES, Questionnaire, SurveyMap, read_survey_map
 from .shared.progress import progress_bar
 from .shared.road import add_road, chosen_road
 
@@ -47,6 +47,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     add_road(parser, "road driven, needed if recordings lack columns")
     parser.add_argument(
+        "--map", type=Path, metavar="TOML",
+        help="what columns and answers of the questionnaire mean, [questionnaire]",
+    )  # fmt: skip
+    parser.add_argument(
         "--out", type=Path, metavar="FOLDER", help="tables as CSV (default: FOLDER/analysis)"
     )
 
@@ -68,7 +72,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Analyse, write the tables, print what was found and where it is."""
     road = chosen_road(options)
-    study = StudyFolder(options.folder, road.route if road else None, frozenset(options.without))
+    survey = read_survey_map(options.map) if options.map else SurveyMap()
+    route = road.route if road else None
+    study = StudyFolder(options.folder, route, frozenset(options.without), survey)
     with progress_bar("read", 1.0, "recordings") as bar:  # analyse tells how many there are
         task = bar.task_ids[0]
         analysis = analyse(study, lambda done, all_: bar.update(task, completed=done, total=all_))
@@ -81,6 +87,9 @@ def run(options: argparse.Namespace) -> None:
     console.print(_tests(analysis))
     for line in _remarks(analysis):
         console.print(line, highlight=False)
+    for finding in analysis.notes:
+        if finding.severity == "note" and not finding.line:
+            console.print(f"{finding.text[:1].upper()}{finding.text[1:]}.", highlight=False)
     if options.report or options.figures:
         _show(analysis, study, options)
     print(f"Tables: {', '.join(path.name for path in written)} in {written[0].parent}.")
