@@ -134,6 +134,13 @@ def test_recordings_of_a_laboratory_give_the_rates_of_section_4(tmp_path: Path) 
             "P2,B1,23",
             "line 11, participant P2, phase B1, pedal_rate: '23' is not a number from 0 to 1",
         ),
+        (
+            "P2,B1,0.23,0.17,0.35",
+            "P2,B1,0.23,0.17,0.53",
+            "line 11, participant P2, phase B1, combined_rate: 0.53 cannot be the share of the "
+            "time with pedal (0.23), set speed (0.17) or both, which is from 0.23 to 0.4",
+        ),
+        ("P2,B1,0.23,0.17,0.35", "P2,B1,0.23,0.17,0.2", "combined_rate: 0.2 cannot be the share"),
         ("P2,B1,0.23", "P2,B1,x", "pedal_rate: 'x' is not a number"),
         ("P2,B1,0.23", "P2,B1,", "pedal_rate: '' is not a number"),
         ("P2,B1,", "P2,B1,1,", "line 11: 6 values for 5 columns"),

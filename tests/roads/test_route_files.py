@@ -68,6 +68,10 @@ def test_a_route_without_a_line_is_written_without_one(path: Path) -> None:
         (f"{HEADER}\n0,0,9\n5,,9\n", "line 3, curvature_per_m: '' is not a number"),
         (f"{HEADER}\n0,0,9\n5,nan,9\n", "line 3, curvature_per_m: 'nan' is not a number"),
         (f"{HEADER}\n0,0,9\n# c\n5,0,inf\n", "line 4, speed_limit_mps: 'inf' is not a number"),
+        (
+            f"{HEADER},grade\n0,0,9,0\n5,0,9,5\n",
+            "line 3, grade: '5' is not rise over run, such as 0.05",
+        ),
         (f"{HEADER}\n0,0,9\n5,0,0\n", "line 3: speed_limit_mps = 0; a limit must be above 0"),
         (f"{HEADER}\n0,0,9\n5,0,-4\n", "line 3: speed_limit_mps = -4"),
         (f"{HEADER}\n0,0,100\n5,0,100\n", "line 2: .* above 300 km/h; is the unit right"),

@@ -6,12 +6,15 @@ import re
 from collections.abc import Collection, Iterator, Sequence
 from math import isnan, nan
 from pathlib import Path
+from typing import Final
 
 from ..errors import ModelError
 from ..files.tables import Fault, Table, read_table
-from ..recordings.interventions import pedal_interventions, rates_of
+from ..recordings.interventions import Rates, pedal_interventions, rates_of
 from ..recordings.recording import Recording
 from ..study.drive_row import DRIVES, PHASE, DriveRow
+
+_ROUNDED: Final = 0.015  # what three shares written with two decimals can be off
 
 
 def row_of_recording(participant: str, phase: str, recording: Recording, where: str) -> DriveRow:
@@ -36,7 +39,7 @@ def read_drives(path: Path, without: Collection[str] = ()) -> list[DriveRow]:
         ModelError: naming file, line, participant, phase, column and value of what is wrong.
     """
     table = read_table(path, DRIVES, {"participant": without})
-    table.refuse(_other_systems(table))
+    table.refuse((*_other_systems(table), *_impossible_shares(table)))
     return [_drive(table, row) for row in range(len(table))]
 
 
@@ -58,6 +61,20 @@ def _other_systems(table: Table) -> Iterator[Fault]:
         system, phase = "AB"[int(place)], table.texts["phase"][row]
         if system != phase[0]:
             yield table.fault(row, "system", f"{system!r} is not that of the phase, {phase[0]}")
+
+
+def _impossible_shares(table: Table) -> Iterator[Fault]:
+    """The time with either covers that with each, and is at most that with one plus the other."""
+    shares = [table.numbers[f"{name}_rate"] for name in Rates._fields]
+    for row, (pedal, set_speed, combined) in enumerate(zip(*shares, strict=True)):
+        low, high = max(pedal, set_speed), min(pedal + set_speed, 1.0)
+        if not low - _ROUNDED <= combined <= high + _ROUNDED:
+            yield table.fault(
+                row,
+                "combined_rate",
+                f"{combined:g} cannot be the share of the time with pedal ({pedal:g}), set speed "
+                f"({set_speed:g}) or both, which is from {low:g} to {high:g}; correct the three",
+            )
 
 
 def check_phase(where: str, phase: str) -> None:

@@ -24,7 +24,8 @@ ROUTE: Final = Format(
         Column("s_m", unit="m"),
         Column("curvature_per_m", unit="1/m"),
         Column("speed_limit_mps", unit="m/s"),
-        Column("grade", needed=False),
+        # A slope in percent, taken for a share, would be a wall.
+        Column("grade", low=-1.0, high=1.0, wanted="rise over run, such as 0.05", needed=False),
         Column("x_m", unit="m", needed=False),
         Column("y_m", unit="m", needed=False),
     ),
