@@ -195,6 +195,6 @@ def analyse(
     Raises:
         ModelError: a file cannot be used, or there are too few participants.
     """
-    from .analysis import analysis
+    from .analysis import analysis, study_folder
 
-    return analysis.analyse(analysis.StudyFolder(Path(folder), route, frozenset(without)))
+    return analysis.analyse(study_folder.StudyFolder(Path(folder), route, frozenset(without)))

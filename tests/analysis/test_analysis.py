@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pldf.analysis.analysis import StudyFolder, analyse
+from pldf.analysis.analysis import analyse
 from pldf.analysis.questionnaires import LAAN, PROFILE, read_questionnaire
+from pldf.analysis.study_folder import StudyFolder
 from pldf.cli import main
 from pldf.errors import ModelError
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE, STANDBY

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 from built_once import once
-from pldf.analysis.analysis import StudyFolder, analyse
+from pldf.analysis.analysis import analyse
+from pldf.analysis.study_folder import StudyFolder
 from pldf.cli import main
 from pldf.report.contents import Contents, collect
 from pldf.report.page import report_of

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from pldf.analysis.analysis import StudyFolder, analyse
+from pldf.analysis.analysis import analyse
+from pldf.analysis.study_folder import StudyFolder
 from pldf.cli import main
 from pldf.errors import ModelError
 from pldf.report.contents import Contents, collect

@@ -6,134 +6,29 @@ and B2), as in the paper. Drives without interventions (A3, B3) are reported but
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from ..errors import ModelError
 from ..findings import Finding
-from ..function import DrivingFunction
 from ..kernel.arrays import FloatArray
 from ..recordings.interventions import Rates
-from ..recordings.recording import Recording, completed, read_recording
-from ..roads import Route
 from ..study.drive_row import DriveRow
-from ..study.phases import PHASES, Phase
-from .drives_table import check_complete, check_phase, read_drives, row_of_recording
-from .questionnaires import Questionnaire, SurveyMap, read_questionnaire
+from .drives_table import check_complete, read_drives, row_of_recording
+from .questionnaires import Questionnaire, read_questionnaire
 from .rounding import as_written
 from .statistics import Comparison, MeanInterval, compare, mean_interval
+from .study_folder import SYSTEMS, StudyFolder
 
-SYSTEMS: Final = ("A", "B")
 RATES: Final = Rates._fields
 PARTICIPANTS_MIN: Final = 2
 
-# What a recording must hold for the rates, and what is derived when the route is known.
-_PEDALS_AND_LEVER: Final = ("brake_pedal", "set_speed_offset_mps")
-
 # Called with the number of recordings read and of all.
 Reading = Callable[[int, int], None]
-
-
-@dataclass(frozen=True, eq=False)
-class StudyFolder:
-    """Where a study lies and what of it counts.
-
-    Attributes:
-        folder: with ``drives.csv`` or ``recordings/``, and ``questionnaire.csv`` if there is one.
-        route: the route driven, for recordings that lack columns.
-        without: participants to leave out.
-        survey: what columns and answers of the questionnaire mean.
-    """
-
-    folder: Path
-    route: Route | None = None
-    without: frozenset[str] = frozenset()
-    survey: SurveyMap = field(default_factory=SurveyMap)
-
-    @property
-    def questionnaire(self) -> Path:
-        """The file with the answers, if there is one."""
-        return self.folder / self.survey.file
-
-    @cached_property
-    def study_file(self) -> Mapping[str, Any]:
-        """The study file that a simulation left in the folder; empty for real participants."""
-        path = self.folder / "study.toml"
-        try:
-            return tomllib.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-        except (OSError, ValueError) as error:
-            raise ModelError(f"{path}: {error}") from error
-
-    def order(self) -> list[Phase]:
-        """Return the drives in the order of the study; repeated phases are numbered anew."""
-        drives = self.study_file.get("drives", {})
-        repeats = drives.get("per_phase", 1)
-        phases = [PHASES[name] for name in drives.get("phases", PHASES) for _ in range(repeats)]
-        if repeats == 1:
-            return phases
-        counts = dict.fromkeys(SYSTEMS, 0)
-        for at, phase in enumerate(phases):
-            system = phase.name[0]
-            counts[system] += 1
-            phases[at] = phase._replace(name=f"{system}{counts[system]}")
-        return phases
-
-    def compared(self) -> dict[str, tuple[str, ...]]:
-        """Return, per system, the drives in which the drivers intervene."""
-        acting = dict.fromkeys(phase.name for phase in self.order() if phase.intervenes)
-        return {s: tuple(name for name in acting if name[0] == s) for s in SYSTEMS}
-
-    def development(self) -> dict[str, str]:
-        """Return each drive learned from -> the next one with the learned profile."""
-        followed_in: dict[str, str] = {}
-        taught = ""
-        for phase in self.order():
-            if phase.apply_learned and taught:
-                followed_in.setdefault(taught, phase.name)
-            taught = phase.name if phase.learn else taught
-        return followed_in
-
-    def recordings(self) -> dict[tuple[str, str], Path]:
-        """Return the recordings by (participant, phase); ModelError for a name that tells neither.
-
-        Participants are in order of their names, drives in the order of the study.
-        """
-        paths = {}
-        for path in sorted((self.folder / "recordings").glob("*.csv")):
-            participant, _, phase = path.stem.rpartition("_")
-            if not participant:
-                raise ModelError(
-                    f"{path}: name recordings PARTICIPANT_PHASE.csv, such as P001_A1.csv"
-                )
-            check_phase(str(path), phase)
-            if participant not in self.without:
-                paths[participant, phase] = path
-        return paths
-
-    def read(self, path: Path) -> Recording:
-        """Read a recording with all columns, or with pedals and lever at least.
-
-        Raises:
-            ModelError: columns are missing and the route is not known.
-        """
-        recording = read_recording(path)
-        missing = [name for name in _PEDALS_AND_LEVER if name not in recording]
-        if self.route is None:
-            if missing:
-                raise ModelError(
-                    f"{path}: no column {', '.join(missing)}; name the route driven with --route "
-                    "to have it derived"
-                )
-            return recording
-        function = DrivingFunction()
-        function.prepare(self.route)
-        return completed(recording, function.route, function.profile)
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,10 +12,11 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from ..analysis.analysis import RATES, Analysis, StudyFolder, analyse
+from ..analysis.analysis import RATES, Analysis, analyse
 from ..analysis.analysis_tables import write_tables
 from ..analysis.published import DRIVERS, TESTS, published_means
 from ..analysis.questionnaires import SCALES, Questionnaire, SurveyMap, read_survey_map
+from ..analysis.study_folder import StudyFolder
 from .shared.progress import progress_bar
 from .shared.road import add_road, chosen_road
 

@@ -10,8 +10,9 @@ from typing import Final
 from ..errors import ModelError
 from ..function import DrivingFunction
 from ..profiles.store import read_profile
+from ..recordings.derived import completed
 from ..recordings.interventions import rates_of
-from ..recordings.recording import Recording, completed, read_recording
+from ..recordings.recording import Recording, read_recording
 from ..roads import Road, open_route
 from .shared.road import add_road, chosen_road
 

@@ -17,7 +17,8 @@ from ..kernel.stretch import stretch_factor, stretched_position
 from ..kernel.units import KMH_PER_MPS
 from ..profiles.store import Iteration, StoredProfile
 from ..roads import Route, fingerprint
-from .recording import Recording, completed
+from .derived import completed
+from .recording import Recording
 
 SAME_MPS = 1e-9
 

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from ..files.tables import Cell, Column, Fault, Format, Table, read_table, table_csv, write_table
-from ..kernel.arrays import FloatArray, ProfileArrays, RouteArrays
-from ..kernel.codes import GAS_OVERRIDE, MODE, STANDBY
+from ..kernel.arrays import FloatArray
+from ..kernel.codes import MODE
 
 RECORDING: Final = Format(
     "recording",
@@ -92,28 +92,3 @@ def _back_in_time(table: Table) -> Iterator[Fault]:
     for row in np.flatnonzero(np.diff(table.numbers["time_s"]) <= 0.0).tolist():
         text = "not after the line before; sort the recording by time and drop repeated rows"
         yield table.fault(row + 1, "time_s", text)
-
-
-def completed(recording: Recording, route: RouteArrays, profile: ProfileArrays) -> Recording:
-    """Return ``recording`` with every column, absent ones derived from route and profile driven.
-
-    Pedals come from the mode (standby after driving counts as braked), acceleration from the
-    speed, set speed and offset from each other and the limit.
-    """
-    columns = dict(recording.columns)
-    cell = np.clip(np.floor(columns["s_m"]), 0, len(route.limit_mps) - 1).astype(np.intp)
-    node = np.arange(float(len(route.limit_mps)))
-    automatic = (np.asarray(route.limit_mps) + np.asarray(profile.offset_mps))[cell]
-    columns.setdefault("limit_mps", np.asarray(route.limit_mps)[cell])
-    columns.setdefault("base_mps", np.interp(columns["s_m"], node, np.asarray(profile.base_mps)))
-    columns.setdefault(
-        "profile_mps", np.interp(columns["s_m"], node, np.asarray(profile.learned_mps))
-    )
-    columns.setdefault("gas_pedal", (columns["mode"] == GAS_OVERRIDE).astype(np.float64))
-    columns.setdefault("brake_pedal", (columns["mode"] == STANDBY).astype(np.float64))
-    columns.setdefault("eligible", np.ones(len(recording)))
-    columns.setdefault("acceleration_mps2", np.gradient(columns["speed_mps"], columns["time_s"]))
-    if "set_speed_mps" not in columns:
-        columns["set_speed_mps"] = automatic + columns.get("set_speed_offset_mps", 0.0)
-    columns.setdefault("set_speed_offset_mps", columns["set_speed_mps"] - automatic)
-    return replace(recording, columns={name: columns[name] for name in COLUMNS})

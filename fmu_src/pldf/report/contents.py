@@ -10,8 +10,9 @@ from typing import Final
 
 import numpy as np
 
-from ..analysis.analysis import Analysis, StudyFolder
+from ..analysis.analysis import Analysis
 from ..analysis.long_run import Columns, read_long_run
+from ..analysis.study_folder import StudyFolder
 from ..errors import ModelError
 from ..files.tables import read_table
 from ..function import DrivingFunction
