@@ -19,9 +19,10 @@ from pldf.cosim.master import ARRIVED, Drive, connections, drive
 from pldf.errors import ModelError
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE, STANDBY
 from pldf.profiles.store import ProfileStore, StoredProfile
+from pldf.recordings.columns import COLUMNS
 from pldf.recordings.interventions import Interval, pedal_interventions, rates_of
 from pldf.recordings.offline import learn_from
-from pldf.recordings.recording import COLUMNS, Recording, read_recording, write_recording
+from pldf.recordings.recording import Recording, read_recording, write_recording
 from pldf.roads import fingerprint, packed_route, route_arrays
 from pldf.study.phases import PHASES, DriveSetting, Phase, values_of
 

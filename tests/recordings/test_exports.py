@@ -12,8 +12,9 @@ import pytest
 from pldf.cli import main
 from pldf.errors import ModelError
 from pldf.kernel.codes import MODE
+from pldf.recordings.columns import COLUMNS
 from pldf.recordings.exports import UNITS, write_mdf4, write_parquet
-from pldf.recordings.recording import COLUMNS, Recording, write_recording
+from pldf.recordings.recording import Recording, write_recording
 
 
 @pytest.fixture

@@ -13,8 +13,8 @@ import pytest
 from pldf.cosim.fmu import Fmu
 from pldf.cosim.master import connections
 from pldf.errors import ModelError
+from pldf.recordings.columns import COLUMNS
 from pldf.recordings.interventions import rates_of
-from pldf.recordings.recording import COLUMNS
 from pldf.roads import open_road, route_arrays
 from pldf.study import loop
 from pldf.study.participants import (

@@ -12,7 +12,7 @@ from pldf.study.participants_file import participants_csv, read_participants
 from pldf.study.phases import PHASES
 from pldf.study.population import sample_participants
 from pldf.study.study_file import PACKAGED, Study, read_study, study_path
-from pldf.study.toml_file import line_of
+from pldf.toml_file import line_of
 
 PAPER = study_path("paper")
 

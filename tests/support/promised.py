@@ -23,7 +23,7 @@ from pldf.cli import build_parser
 from pldf.commands import COMMANDS
 from pldf.cosim.prepared import packed_files
 from pldf.profiles import profile_file
-from pldf.recordings.recording import COLUMNS as RECORDING
+from pldf.recordings.columns import COLUMNS as RECORDING
 from pldf.roads.route import COLUMNS as ROUTE
 from pldf.study.drive_row import COLUMNS as DRIVES
 from pldf.study.participants_file import PARTICIPANTS

@@ -15,8 +15,8 @@ from ..study.own_files import DRIVES, PARTICIPANTS
 from ..study.results import StudyResults
 from ..study.runner import in_processes, on_cluster, prepare_processes, run_missing
 from ..study.study_file import ONE_DRIVER, Study, changes_of, read_study, study_path
-from ..study.toml_file import Key
 from ..study.unit import Job, ParticipantResult
+from ..toml_file import Key
 from .shared.coupling import (
     NATIVE_IF_GOOD,
     add_coupling,

@@ -19,7 +19,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ..errors import ModelError
-from ..recordings.recording import COLUMNS, Recording
+from ..recordings.columns import COLUMNS
+from ..recordings.recording import Recording
 from .ctrl_c import noted_ctrl_c
 from .drive_limits import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS, STEP_S
 from .fmu import BufferElement, Fmu, Slave, unpack

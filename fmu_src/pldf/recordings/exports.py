@@ -15,7 +15,9 @@ import numpy as np
 
 from ..errors import ModelError
 from ..kernel.codes import MODE
-from .recording import COLUMNS, RECORDING, Recording
+from .columns import COLUMNS, RECORDING
+from .inputs import not_installed
+from .recording import Recording
 
 UNITS: Final = {column.name: column.unit for column in RECORDING.columns}
 
@@ -32,7 +34,7 @@ def write_parquet(path: Path, recording: Recording) -> None:
         import pyarrow as pa  # type: ignore[import-untyped]  # noqa: PLC0415 - optional
         import pyarrow.parquet as pq  # type: ignore[import-untyped]  # noqa: PLC0415
     except ImportError as error:
-        raise _not_installed("Parquet", "pyarrow", "parquet") from error
+        raise not_installed("Parquet", "pyarrow", "parquet") from error
     arrays, fields = [], []
     for name in _names(recording):
         array = pa.array(_typed(name, recording))
@@ -53,7 +55,7 @@ def write_mdf4(path: Path, recording: Recording) -> None:
     try:
         from asammdf import MDF, Signal  # noqa: PLC0415 - optional
     except ImportError as error:
-        raise _not_installed("MDF4", "asammdf", "mdf") from error
+        raise not_installed("MDF4", "asammdf", "mdf") from error
     signals = [
         Signal(
             samples=recording[name] if UNITS[name] else recording[name].astype(np.uint8),
@@ -99,9 +101,3 @@ def _writable(path: Path) -> Iterator[Path]:
         yield path
     except OSError as error:
         raise ModelError(f"{path}: cannot be written ({error})") from error
-
-
-def _not_installed(format_name: str, package: str, extra: str) -> ModelError:
-    return ModelError(
-        f"{format_name} needs the package {package}: pip install 'adaptive-pldf[{extra}]'"
-    )

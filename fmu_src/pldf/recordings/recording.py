@@ -7,45 +7,31 @@ names them. Needed in any case are ``time_s``, ``s_m``, ``speed_mps`` and ``mode
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from pathlib import Path
 
-import numpy as np
-
-from ..files.tables import Cell, Column, Fault, Format, Table, read_table, table_csv, write_table
+from ..files.tables import Cell, table_csv, write_table
+from ..findings import Finding
 from ..kernel.arrays import FloatArray
 from ..kernel.codes import MODE
-
-RECORDING: Final = Format(
-    "recording",
-    "sample",
-    (
-        Column("time_s", unit="s"),
-        Column("s_m", unit="m"),
-        Column("speed_mps", unit="m/s"),
-        Column("acceleration_mps2", unit="m/s2", needed=False),
-        Column("mode", "word", words=MODE.items),
-        Column("gas_pedal", unit="1", needed=False),
-        Column("brake_pedal", unit="1", needed=False),
-        Column("set_speed_mps", unit="m/s", needed=False),
-        Column("set_speed_offset_mps", unit="m/s", needed=False),
-        Column("profile_mps", unit="m/s", needed=False),
-        Column("base_mps", unit="m/s", needed=False),
-        Column("limit_mps", unit="m/s", needed=False),
-        Column("eligible", "flag", needed=False),
-    ),
-    rows_min=2,
-)
-COLUMNS: Final = RECORDING.names
+from .columns import COLUMNS
+from .mapping import RecordingMap
+from .reading import read_columns
 
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """Named columns of equal length, float64; ``mode`` holds the codes of ``codes.MODE``."""
+    """A recording that was read or made.
+
+    Attributes:
+        columns: by name, of equal length, float64; ``mode`` holds the codes of ``codes.MODE``.
+        comments: of the file.
+        notes: how it was read and what was repaired.
+    """
 
     columns: dict[str, FloatArray]
     comments: tuple[str, ...] = ()
+    notes: tuple[Finding, ...] = ()
 
     def __len__(self) -> int:
         return len(self.columns["time_s"])
@@ -77,18 +63,16 @@ def _cells(recording: Recording) -> dict[str, list[Cell] | FloatArray]:
     return cells
 
 
-def read_recording(path: str | os.PathLike[str]) -> Recording:
+def read_recording(path: str | os.PathLike[str], mapping: RecordingMap | None = None) -> Recording:
     """Return the columns that the file ``path`` has; unknown columns are passed over.
 
+    Args:
+        path: CSV, or with the optional packages Parquet (``.parquet``) or ASAM MDF4 (``.mf4``); or
+            a structured NumPy array (``.npy``, ``.npz``).
+        mapping: what the columns are called there and which units they have; default: ``map.toml``
+            beside the file or in the folder of its study, else a ready map that fits, else ours.
+
     Raises:
-        ModelError: naming file, line, column and value of what cannot be used.
+        ModelError: naming file, line, column and value of all that cannot be used.
     """
-    table = read_table(path, RECORDING)
-    table.refuse(_back_in_time(table))
-    return Recording(table.numbers, table.comments)
-
-
-def _back_in_time(table: Table) -> Iterator[Fault]:
-    for row in np.flatnonzero(np.diff(table.numbers["time_s"]) <= 0.0).tolist():
-        text = "not after the line before; sort the recording by time and drop repeated rows"
-        yield table.fault(row + 1, "time_s", text)
+    return Recording(*read_columns(Path(path), mapping))

@@ -32,7 +32,8 @@ from ..kernel.codes import LEARN_FAITHFUL, LEARN_OFF, OFF, STANDBY
 from ..kernel.signals import signals_of
 from ..kernel.state import PldfState
 from ..profiles.store import Iteration, StoredProfile
-from ..recordings.recording import COLUMNS, Recording
+from ..recordings.columns import COLUMNS
+from ..recordings.recording import Recording
 from ..roads import fingerprint, route_arrays
 from ..route_facts import route_facts
 from . import loop

@@ -15,12 +15,12 @@ from ..kernel.signals import Signal, signals_of
 from ..kernel.state import PldfState
 from ..roads import Road, open_road
 from ..settings import parameter_value
+from ..toml_file import Key, TomlFile, listed, shown
 from .participants import DRIVER_SIGNALS, Participant, StudySettings
 from .participants_file import read_participants
 from .phases import PHASES, Phase
 from .population import Distribution, read_distribution, sample_participants
 from .study_tables import StudyTables, parameter_table
-from .toml_file import Key, TomlFile, listed, shown
 
 # The packaged study of one driver through the FMUs.
 ONE_DRIVER: Final = "one_driver"

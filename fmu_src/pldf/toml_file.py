@@ -16,7 +16,7 @@ from typing import Any, Final, Literal, NoReturn, TypeVar, get_args, get_origin
 
 import msgspec
 
-from ..errors import ModelError
+from .errors import ModelError
 
 Key = tuple[str, ...]
 StructT = TypeVar("StructT", bound=msgspec.Struct)
