@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from functools import cache
 from importlib.resources import as_file, files
@@ -26,7 +26,7 @@ from .units import unit_named, units_of
 MAP_FILE: Final = "map.toml"  # in the folder of a study
 
 _PARTS: Final = ("recording", "mode", "eligible", "questionnaire")
-_ENTRIES: Final = ("column", "unit", "factor", "add", "value")
+_ENTRIES: Final = ("column", "plus", "unit", "factor", "add", "value")
 _EXAMPLE: Final = '{ column = "Speed", unit = "km/h" }'
 _COLUMNS: Final = {column.name: column for column in RECORDING.columns}
 
@@ -36,8 +36,10 @@ class Source:
     """Where one of our columns comes from.
 
     Attributes:
-        line: in the mapping file.
-        column: name in the recording, a ``*`` in it for any characters; empty: ``value`` counts.
+        line: in the mapping file; 0: the column may be absent.
+        column: names in the recording, the first that is there counts; a ``*`` in one stands for
+            any characters; none: ``value`` counts.
+        plus: names of a column of the same unit that is added; none: nothing is.
         unit: as ``units`` writes it; empty: what the file says, else ours.
         factor: that a number is multiplied with, before its unit counts.
         add: that is added then, in that unit.
@@ -45,7 +47,8 @@ class Source:
     """
 
     line: int
-    column: str = ""
+    column: tuple[str, ...] = ()
+    plus: tuple[str, ...] = ()
     unit: str = ""
     factor: float = 1.0
     add: float = 0.0
@@ -115,8 +118,17 @@ def ready_maps() -> Mapping[str, RecordingMap]:
         name, _, ending = entry.name.rpartition(".")
         if ending == "toml":
             with as_file(entry) as path:
-                found[name] = _checked(TomlFile(path), name)
+                found[name] = _lenient(_checked(TomlFile(path), name))
     return found
+
+
+def _lenient(ready: RecordingMap) -> RecordingMap:
+    """Return a ready map for files that lack what a recording may lack."""
+    columns = {
+        ours: source if _COLUMNS[ours].needed else replace(source, line=0)
+        for ours, source in ready.columns.items()
+    }
+    return replace(ready, columns=columns)
 
 
 def ready_text(name: str) -> str:
@@ -139,9 +151,18 @@ def _checked(file: TomlFile, name: str) -> RecordingMap:
 
 
 def _source(entry: Any, line: int) -> Source:
-    if isinstance(entry, str):
-        return Source(line, entry)
-    return Source(line, **{**entry, "unit": unit_named(entry.get("unit", ""))})
+    entry = entry if isinstance(entry, Mapping) else {"column": entry}
+    told = {name: _names(entry[name]) for name in ("column", "plus") if name in entry}
+    return Source(line, **{**entry, **told, "unit": unit_named(entry.get("unit", ""))})
+
+
+def _names(value: str | list[str]) -> tuple[str, ...]:
+    return (value,) if isinstance(value, str) else tuple(value)
+
+
+def _are_names(value: object) -> bool:
+    names = value if isinstance(value, list) else [value]
+    return bool(names) and all(isinstance(name, str) and name.strip() for name in names)
 
 
 def dotted(key: Key) -> str:
@@ -167,11 +188,10 @@ def _wrong_columns(content: Mapping[str, Any]) -> Iterator[tuple[Key, str]]:
         key = ("recording", ours)
         if ours not in _COLUMNS:
             yield key, _unknown(ours, tuple(_COLUMNS))
-        elif not (isinstance(entry, Mapping) or (isinstance(entry, str) and entry)):
-            yield key, f"{shown(entry)} is no column; write {_EXAMPLE}"
         elif isinstance(entry, Mapping):
-            for text in _wrong_source(entry, _COLUMNS[ours]):
-                yield key, text
+            yield from ((key, text) for text in _wrong_source(entry, _COLUMNS[ours]))
+        elif not _are_names(entry):
+            yield key, f"{shown(entry)} is no column; write {_EXAMPLE}"
 
 
 def _wrong_source(entry: Mapping[str, Any], column: Column) -> Iterator[str]:
@@ -179,8 +199,11 @@ def _wrong_source(entry: Mapping[str, Any], column: Column) -> Iterator[str]:
     yield from (f"{name}: {_unknown(name, _ENTRIES)}" for name in unknown)
     if ("column" in entry) == ("value" in entry) and not unknown:
         yield f"needs either column or value; write {_EXAMPLE}"
-    if "column" in entry and not (isinstance(entry["column"], str) and entry["column"].strip()):
-        yield f"column: {shown(entry['column'])} is not the name of a column"
+    for name in ("column", "plus"):
+        if name in entry and not _are_names(entry[name]):
+            yield f"{name}: {shown(entry[name])} is not the name of a column"
+    if "plus" in entry and not column.unit:
+        yield f"plus: {column.name} has no numbers to add"
     for name in ("factor", "add"):
         number = entry.get(name, 1.0)
         if not _is_number(number) or (name == "factor" and number == 0.0):

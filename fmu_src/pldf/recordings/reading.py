@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from fnmatch import translate
 from pathlib import Path
-from re import IGNORECASE, fullmatch
+from re import fullmatch
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -39,12 +39,16 @@ class Columns(NamedTuple):
 
 @dataclass(frozen=True)
 class Found:
-    """One of our columns in a file: ``name`` there, empty if ``source`` is a constant."""
+    """One of our columns in a file: ``name`` there, empty if ``source`` is a constant.
+
+    To its numbers those of the column ``plus`` are added, if there is one.
+    """
 
     ours: Column
     source: Source
     name: str
     unit: str
+    plus: str = ""
 
 
 def read_columns(path: Path, mapping: RecordingMap | None) -> Columns:
@@ -87,12 +91,18 @@ def _found(file: Input, mapping: RecordingMap) -> list[Found]:
             raise ModelError(f"{error}\n  {_way_out(file.path)}") from None
     found = []
     for column in RECORDING.columns:
-        source = mapping.columns.get(column.name, Source(0, column.name))
+        source = _source_of(column, mapping)
         names = [""] if source.value is not None else _matching(source.column, file.names)
-        if names:
+        plus = _matching(source.plus, file.names)
+        if names and (plus or not source.plus):
             unit = source.unit or _unit_in_file(file, names[0], column)
-            found.append(Found(column, source, names[0], unit))
+            found.append(Found(column, source, names[0], unit, *plus))
     return found
+
+
+def _source_of(column: Column, mapping: RecordingMap) -> Source:
+    """Return where a column comes from: by default from one of our name."""
+    return mapping.columns.get(column.name, Source(0, (column.name,)))
 
 
 def _way_out(path: Path) -> str:
@@ -107,21 +117,16 @@ def _unresolved(file: Input, mapping: RecordingMap) -> Iterator[str]:
     missing: list[str] = []
     twice: list[str] = []
     for column in RECORDING.columns:
-        source = mapping.columns.get(column.name, Source(0, column.name))
-        names = (
-            _matching(source.column, file.names)
-            if source.value is None
-            else [
-                "",
-            ]
-        )
-        if len(names) == 1 or not (names or column.needed or source.line):
-            continue
-        if source.line:
-            at = f"{mapping.name}, line {source.line}, recording.{column.name}"
-            yield f"{at}: {_not_one(source.column, names, file)}"
-        else:
-            (twice if names else missing).append(column.name)
+        source = _source_of(column, mapping)
+        for wanted in (source.column, source.plus):
+            names = _matching(wanted, file.names) if wanted else [""]
+            if len(names) == 1 or not (names or column.needed or source.line):
+                continue
+            if source.line:
+                at = f"{mapping.name}, line {source.line}, recording.{column.name}"
+                yield f"{at}: {_not_one(wanted, names, file)}"
+            else:
+                (twice if names else missing).append(column.name)
     if missing and mapping.name:
         yield (
             f"{mapping.name}: no line for {', '.join(missing)} under [recording], and {file.path} "
@@ -132,12 +137,13 @@ def _unresolved(file: Input, mapping: RecordingMap) -> Iterator[str]:
         yield "; ".join(f"{what} column {', '.join(names)}" for what, names in wrong if names)
 
 
-def _not_one(wanted: str, names: list[str], file: Input) -> str:
+def _not_one(wanted: tuple[str, ...], names: list[str], file: Input) -> str:
+    meant = " or ".join(map(repr, wanted))
     if names:
-        return f"{wanted!r} is {len(names)} columns of {file.path}: {_listed(names)}"
-    near = get_close_matches(wanted, file.names, 1)
-    meant = f"is {near[0]!r} meant?" if near else f"it has {_listed(file.names)}"
-    return f"{file.path} has no column {wanted!r}; {meant}"
+        return f"{meant} is {len(names)} columns of {file.path}: {_listed(names)}"
+    near = get_close_matches(wanted[0], file.names, 1)
+    way_out = f"is {near[0]!r} meant?" if near else f"it has {_listed(file.names)}"
+    return f"{file.path} has no column {meant}; {way_out}"
 
 
 def _listed(names: tuple[str, ...] | list[str]) -> str:
@@ -145,15 +151,15 @@ def _listed(names: tuple[str, ...] | list[str]) -> str:
     return ", ".join(map(repr, names[:_LISTED_MAX])) + more
 
 
-def _matching(wanted: str, names: tuple[str, ...]) -> list[str]:
-    """Return the columns that ``wanted`` means; capitals count only if that is needed."""
-    if same := [name for name in names if name == wanted]:
-        return same
-    if "*" not in wanted:
-        return []
-    # A bracket in a header is a bracket, so what fnmatch takes for sets is taken away from it.
-    pattern = translate(wanted.replace("[", "[[]").replace("?", "[?]"))
-    return [name for name in names if fullmatch(pattern, name, IGNORECASE)]
+def _matching(wanted: tuple[str, ...], names: tuple[str, ...]) -> list[str]:
+    """Return the columns that the first of ``wanted`` means that means any."""
+    for one in wanted:
+        # A bracket in a header is a bracket, so it is no set of characters as in fnmatch.
+        pattern = translate(one.replace("[", "[[]").replace("?", "[?]"))
+        same = [name for name in names if name == one]
+        if found := same or [name for name in names if fullmatch(pattern, name)]:
+            return found
+    return []
 
 
 def _unit_in_file(file: Input, name: str, column: Column) -> str:
@@ -171,8 +177,9 @@ def _told(file: Input, mapping: RecordingMap, found: list[Found]) -> Finding:
         if not column.name:
             said.append(f"{column.ours.name} is {column.source.value} throughout")
         elif column.name != column.ours.name or _is_converted(column):
-            unit = f" in {column.unit}" if column.unit not in ("", "1") else ""
-            said.append(f"{column.ours.name} from {column.name!r}{unit}")
+            name = repr(column.name) + (f" + {column.plus!r}" if column.plus else "")
+            unit = f" in {column.unit}" if _is_converted(column) else ""
+            said.append(f"{column.ours.name} from {name}{unit}")
     by = f"read with the map {mapping.name}: " if mapping.name else "read by the units it states: "
     return Finding("note", str(file.path), 0, "", by + (", ".join(said) or "all names are ours"))
 
@@ -186,6 +193,8 @@ def _format(found: list[Found], mapping: RecordingMap) -> Format:
         kind = "text" if as_text else one.ours.kind
         unit = "" if as_text else one.unit
         column = replace(one.ours, name=one.name, kind=kind, unit=unit, needed=True)
+        if one.plus:
+            columns.setdefault(one.plus, replace(column, name=one.plus))
         if columns.setdefault(one.name, column).kind != kind:
             raise ModelError(
                 f"{mapping.name}, line {one.source.line}, recording.{one.ours.name}: the column "
@@ -219,7 +228,9 @@ def _numbers(table: Table, found: list[Found], mapping: RecordingMap) -> dict[st
         elif one.name in table.texts:
             numbers[one.ours.name] = _coded(table, one, mapping, faults)
         else:
-            numbers[one.ours.name] = _calculated(table.numbers[one.name], one)
+            values = table.numbers[one.name]
+            values = values + table.numbers[one.plus] if one.plus else values
+            numbers[one.ours.name] = _calculated(values, one)
     table.refuse(faults)
     return numbers
 
