@@ -8,7 +8,8 @@ import numpy as np
 
 from ..kernel.arrays import ProfileArrays, RouteArrays
 from ..kernel.codes import GAS_OVERRIDE, STANDBY
-from .recording import COLUMNS, Recording
+from .columns import COLUMNS
+from .recording import Recording
 
 
 def completed(recording: Recording, route: RouteArrays, profile: ProfileArrays) -> Recording:
