@@ -271,6 +271,7 @@ def test_who_has_no_score_leaves_the_comparison_of_that_scale_only(
     assert "warning: " in said.err
     assert "no score of P1 (A)" in said.err
     assert "satisfying 1.00 (n = 7)" in said.out
+    assert "Scores without single items, means of the others: 1." in said.out
     with (tmp_path / "analysis" / "participants.csv").open() as file:
         rows = {(row["participant"], row["system"]): row for row in csv.DictReader(file)}
     assert rows["P3", "B"]["satisfying"] == rows["P1", "A"]["speed_profile"] == ""

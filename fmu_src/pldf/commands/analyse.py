@@ -88,9 +88,6 @@ def run(options: argparse.Namespace) -> None:
     console.print(_tests(analysis))
     for line in _remarks(analysis):
         console.print(line, highlight=False)
-    for finding in analysis.notes:
-        if finding.severity == "note" and not finding.line:
-            console.print(f"{finding.text[:1].upper()}{finding.text[1:]}.", highlight=False)
     if options.report or options.figures:
         _show(analysis, study, options)
     print(f"Tables: {', '.join(path.name for path in written)} in {written[0].parent}.")
@@ -173,6 +170,10 @@ def _remarks(analysis: Analysis) -> list[str]:
     answers = analysis.questionnaire
     if answers:
         told.append(f"Cronbach's alpha: {', '.join(_alpha(answers, s) for s in answers.scores)}.")
+        notes = [note for note in answers.notes if note.severity == "note"]
+        told += [f"{note.text[:1].upper()}{note.text[1:]}." for note in notes if not note.line]
+        if partly := sum(1 for note in notes if note.line):
+            told.append(f"Scores without single items, means of the others: {partly}.")
         absent = [scale for scale in SCALES if scale not in answers.scores]
         if absent:
             told.append(f"Not in the questionnaire: {', '.join(absent)}.")
