@@ -23,7 +23,7 @@ SCORES = (2, 1, 0, -1, -2, 1, 0, -1, 2)  # favourable +2; on the right in 3, 6 a
 def read(folder: Path, text: str, survey: dict[str, object] | None = None) -> Questionnaire:
     path = folder / "questionnaire.csv"
     path.write_text(text, encoding="utf-8")
-    return read_questionnaire(path, (), survey_map(survey or {}, Path("map.toml")))
+    return read_questionnaire(path, (), survey_map(survey or {}, "map.toml"))
 
 
 def refusal(folder: Path, text: str, survey: dict[str, object] | None = None) -> str:
@@ -219,7 +219,7 @@ def test_all_that_is_wrong_with_a_map_is_told_at_once() -> None:
                 "systems": {"first": "C"}, "missing": "x", "answered_min": 75,
                 "header_lines": 0, "only": {"Status": "done"},
             },
-            Path("map.toml"),
+            "map.toml",
         )  # fmt: skip
     told = str(refused.value).splitlines()
     assert len(told) == 8

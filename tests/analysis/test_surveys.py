@@ -16,10 +16,12 @@ from pldf.analysis.questionnaires import (
     PROFILE,
     Questionnaire,
     read_questionnaire,
-    read_survey_map,
+    survey_map,
 )
+from pldf.analysis.study_folder import StudyFolder
 from pldf.cli import main
 from pldf.errors import ModelError
+from pldf.recordings.mapping import read_map
 
 SURVEYS = Path(__file__).parents[2] / "examples" / "surveys"
 TOOLS = ("qualtrics", "redcap", "redcap_labels")
@@ -41,7 +43,8 @@ def scored(item: str, box: float) -> float:
 
 
 def read(tool: str) -> Questionnaire:
-    names = read_survey_map(SURVEYS / f"{tool}.toml")
+    path = SURVEYS / f"{tool}.toml"
+    names = survey_map(read_map(path).questionnaire, str(path))
     return read_questionnaire(SURVEYS / names.file, (), names)
 
 
@@ -89,7 +92,7 @@ def test_a_study_with_an_export_and_its_map(
 ) -> None:
     lines = ["participant,phase,pedal_rate,set_speed_rate,combined_rate"]
     lines += [
-        f"{who},{phase},{0.1 * int(who[2]) + 0.05 * (phase[0] == 'A'):.2f},0.2,0.3"
+        f"{who},{phase},{0.1 * int(who[2]) + 0.05 * (phase[0] == 'A'):.2f},0.2,0.5"
         for who in ("P01", "P02", "P03", "P04")
         for phase in ("A1", "A2", "B1", "B2")
     ]
@@ -104,20 +107,11 @@ def test_a_study_with_an_export_and_its_map(
     assert (counts["pedal"], counts["usefulness"], counts["speed_profile"]) == ("4", "4", "3")
 
 
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
-        ("[questionnaire", "no TOML file"),
-        ("questionnaire = 3", "3 is not a table"),
-        ('[questionnaire]\nitems = "laan_1"', "items: 'laan_1' is not a table"),
-    ],
-)
-def test_a_map_that_is_none(tmp_path: Path, text: str, told: str) -> None:
-    path = tmp_path / "map.toml"
-    path.write_text(text)
-    with pytest.raises(ModelError, match=told):
-        read_survey_map(path)
-    with pytest.raises(ModelError, match="cannot be read"):
-        read_survey_map(tmp_path / "none.toml")
-    path.write_text("[columns]\n")
-    assert read_survey_map(path).file == "questionnaire.csv"
+def test_a_map_is_remembered_in_the_folder_of_the_study(tmp_path: Path) -> None:
+    shutil.copy(SURVEYS / "redcap.toml", tmp_path / "map.toml")
+    source = StudyFolder(tmp_path)
+    assert source.questionnaire == tmp_path / "redcap.csv"
+    assert source.survey.participant == "record_id"
+    (tmp_path / "map.toml").write_text('[questionnaire]\nitems = "laan_1"\n')
+    with pytest.raises(ModelError, match=r"map.toml, questionnaire.items: 'laan_1' is not a table"):
+        _ = StudyFolder(tmp_path).questionnaire

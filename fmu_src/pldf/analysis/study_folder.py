@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
@@ -12,11 +12,12 @@ from typing import Any, Final
 from ..errors import ModelError
 from ..function import DrivingFunction
 from ..recordings.derived import completed
+from ..recordings.mapping import RecordingMap, remembered_map
 from ..recordings.recording import Recording, read_recording
 from ..roads import Route
 from ..study.phases import PHASES, Phase
 from .drives_table import check_phase
-from .questionnaires import SurveyMap
+from .questionnaires import SurveyMap, survey_map
 
 SYSTEMS: Final = ("A", "B")
 
@@ -32,13 +33,19 @@ class StudyFolder:
         folder: with ``drives.csv`` or ``recordings/``, and ``questionnaire.csv`` if there is one.
         route: the route driven, for recordings that lack columns.
         without: participants to leave out.
-        survey: what columns and answers of the questionnaire mean.
+        map: what columns and answers are called; None: ``map.toml`` in the folder, if there.
     """
 
     folder: Path
     route: Route | None = None
     without: frozenset[str] = frozenset()
-    survey: SurveyMap = field(default_factory=SurveyMap)
+    map: RecordingMap | None = None
+
+    @cached_property
+    def survey(self) -> SurveyMap:
+        """What columns and answers of the questionnaire mean."""
+        found = self.map or remembered_map(self.folder / "questionnaire.csv")
+        return survey_map(found.questionnaire, found.name) if found else SurveyMap()
 
     @property
     def questionnaire(self) -> Path:
@@ -106,7 +113,7 @@ class StudyFolder:
         Raises:
             ModelError: columns are missing and the route is not known.
         """
-        recording = read_recording(path)
+        recording = read_recording(path, self.map)
         missing = [name for name in _PEDALS_AND_LEVER if name not in recording]
         if self.route is None:
             if missing:

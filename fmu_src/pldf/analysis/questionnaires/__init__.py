@@ -2,7 +2,7 @@
 
 from .answered import Questionnaire, read_questionnaire
 from .scales import LAAN, PROFILE, SCALES
-from .survey_map import SurveyMap, read_survey_map, survey_map
+from .survey_map import SurveyMap, survey_map
 
 __all__ = (
     "LAAN",
@@ -11,6 +11,5 @@ __all__ = (
     "Questionnaire",
     "SurveyMap",
     "read_questionnaire",
-    "read_survey_map",
     "survey_map",
 )

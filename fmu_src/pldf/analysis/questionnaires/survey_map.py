@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from pathlib import Path
 from typing import Any, Final
 
 from ...errors import ModelError
-from ...files.disk import reason
 from .labels import MISSING, plain
 from .scales import BOXES, asked_by
 
@@ -48,24 +45,7 @@ class SurveyMap:
     answered_min: float = ANSWERED_MIN
 
 
-def read_survey_map(path: Path) -> SurveyMap:
-    """Return what the mapping file ``path`` says of questionnaires; ours if it says nothing.
-
-    Raises:
-        ModelError: naming the file, and key and value of all that is wrong with it.
-    """
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8-sig")).get("questionnaire", {})
-    except OSError as error:
-        raise ModelError(f"{path}: cannot be read ({reason(error)}); check the path") from error
-    except ValueError as error:
-        raise ModelError(f"{path}: no TOML file ({error})") from error
-    if not isinstance(table, Mapping):
-        raise ModelError(f"{path}, questionnaire: {table!r} is not a table, [questionnaire]")
-    return survey_map(table, path)
-
-
-def survey_map(table: Mapping[str, Any], path: Path) -> SurveyMap:
+def survey_map(table: Mapping[str, Any], path: str) -> SurveyMap:
     """Return what ``[questionnaire]`` of the mapping file ``path`` says.
 
     Args:
