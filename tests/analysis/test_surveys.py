@@ -92,9 +92,10 @@ def test_a_study_with_an_export_and_its_map(
 ) -> None:
     lines = ["participant,phase,pedal_rate,set_speed_rate,combined_rate"]
     lines += [
-        f"{who},{phase},{0.1 * int(who[2]) + 0.05 * (phase[0] == 'A'):.2f},0.2,0.5"
+        f"{who},{phase},{pedal:.2f},0.2,{pedal + 0.15:.2f}"
         for who in ("P01", "P02", "P03", "P04")
         for phase in ("A1", "A2", "B1", "B2")
+        for pedal in [0.1 * int(who[2]) + 0.05 * (phase[0] == "A")]
     ]
     (tmp_path / "drives.csv").write_text("\n".join((*lines, "")))
     shutil.copy(SURVEYS / "qualtrics.csv", tmp_path)
