@@ -56,6 +56,7 @@ PLDF: Final = Package(
         "route_facts.py",
         "settings.py",
         "study",
+        "toml_file.py",
     ),
 )
 MODELS: Final = Package(
