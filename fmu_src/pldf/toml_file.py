@@ -45,7 +45,7 @@ class TomlFile:
     def __init__(self, path: Path, changes: Mapping[Key, Any] | None = None) -> None:
         self.path = path
         try:
-            self.text = path.read_text(encoding="utf-8")
+            self.text = path.read_text(encoding="utf-8-sig")  # Notepad marks it
         except (OSError, UnicodeDecodeError) as error:
             reason = getattr(error, "strerror", None) or "not a UTF-8 text file"
             raise ModelError(f"{path}: cannot be read ({reason})") from error

@@ -44,13 +44,13 @@ def test_what_others_write_meanwhile_is_not_lost(
     run("--out", "a.pldf")
     really_read = learn.read_recording
 
-    def meanwhile(path: str) -> object:
+    def meanwhile(path: str, mapping: object) -> object:
         profile = read_profile("a.pldf")
         if by == "a rollback":
             rollback_profile("a.pldf", 0)
         else:
             continue_profile("a.pldf", profile.with_iteration(drive_result(profile)))
-        return really_read(path)
+        return really_read(path, mapping)
 
     monkeypatch.setattr(learn, "read_recording", meanwhile)
     status, told = run("--profile-in", "a.pldf", "--out", "a.pldf")

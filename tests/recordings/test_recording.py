@@ -11,9 +11,9 @@ from pldf.errors import ModelError
 from pldf.function import DrivingFunction
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE, MODE, STANDBY
 from pldf.recordings.columns import COLUMNS
+from pldf.recordings.derived import completed
 from pldf.recordings.recording import (
     Recording,
-    completed,
     read_recording,
     recording_csv,
     write_recording,

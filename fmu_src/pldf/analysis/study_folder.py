@@ -12,6 +12,7 @@ from typing import Any, Final
 from ..errors import ModelError
 from ..function import DrivingFunction
 from ..recordings.derived import completed
+from ..recordings.inputs import SUFFIXES
 from ..recordings.mapping import RecordingMap, remembered_map
 from ..recordings.recording import Recording, read_recording
 from ..roads import Route
@@ -95,8 +96,10 @@ class StudyFolder:
 
         Participants are in order of their names, drives in the order of the study.
         """
-        paths = {}
-        for path in sorted((self.folder / "recordings").glob("*.csv")):
+        paths: dict[tuple[str, str], Path] = {}
+        for path in sorted((self.folder / "recordings").glob("*.*")):
+            if path.suffix.lower() not in SUFFIXES:
+                continue
             participant, _, phase = path.stem.rpartition("_")
             if not participant:
                 raise ModelError(
@@ -104,6 +107,8 @@ class StudyFolder:
                 )
             check_phase(str(path), phase)
             if participant not in self.without:
+                if other := paths.get((participant, phase)):
+                    raise ModelError(f"{path}: the same drive as {other}; leave one of them there")
                 paths[participant, phase] = path
         return paths
 

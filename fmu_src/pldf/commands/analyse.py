@@ -17,7 +17,7 @@ from ..analysis.analysis_tables import write_tables
 from ..analysis.published import DRIVERS, TESTS, published_means
 from ..analysis.questionnaires import SCALES, Questionnaire
 from ..analysis.study_folder import StudyFolder
-from ..recordings.mapping import read_map
+from .shared.mapping import add_map, chosen_map, remember_map
 from .shared.progress import progress_bar
 from .shared.road import add_road, chosen_road
 
@@ -48,10 +48,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="leave this participant out (repeatable)",
     )  # fmt: skip
     add_road(parser, "road driven, needed if recordings lack columns")
-    parser.add_argument(
-        "--map", metavar="TOML",
-        help="what columns, units and answers of a laboratory mean (default: FOLDER/map.toml)",
-    )  # fmt: skip
+    add_map(parser)
     parser.add_argument(
         "--out", type=Path, metavar="FOLDER", help="tables as CSV (default: FOLDER/analysis)"
     )
@@ -74,9 +71,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Analyse, write the tables, print what was found and where it is."""
     road = chosen_road(options)
-    given = read_map(options.map) if options.map else None
     route = road.route if road else None
-    study = StudyFolder(options.folder, route, frozenset(options.without), given)
+    study = StudyFolder(options.folder, route, frozenset(options.without), chosen_map(options))
+    remember_map(options, options.folder)
     with progress_bar("read", 1.0, "recordings") as bar:  # analyse tells how many there are
         task = bar.task_ids[0]
         analysis = analyse(study, lambda done, all_: bar.update(task, completed=done, total=all_))

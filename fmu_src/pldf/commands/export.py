@@ -8,6 +8,7 @@ from typing import Final
 
 from ..recordings.exports import write_mdf4, write_parquet
 from ..recordings.recording import read_recording
+from .shared.mapping import add_map, chosen_map, tell
 
 EXAMPLE: Final = "pldf export out/recordings/P001_B1.csv --parquet b1.parquet --mdf4 b1.mf4"
 
@@ -15,6 +16,7 @@ EXAMPLE: Final = "pldf export out/recordings/P001_B1.csv --parquet b1.parquet --
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``pldf export``."""
     parser.add_argument("recording", metavar="RECORDING.csv", type=Path)
+    add_map(parser)
     parser.add_argument(
         "--parquet", type=Path, metavar="OUT", help="needs pip install 'adaptive-pldf[parquet]'"
     )
@@ -30,7 +32,8 @@ def run(options: argparse.Namespace) -> None:
     wanted = [(write, path) for write, path in chosen if path]
     if not wanted:
         options.wrong_usage("say what to write: --parquet OUT, --mdf4 OUT or both")
-    recording = read_recording(options.recording)
+    recording = read_recording(options.recording, chosen_map(options))
+    tell(recording.notes)
     for write, path in wanted:
         write(path, recording)
         print(f"{len(recording)} rows, {len(recording.columns)} columns in {path}")

@@ -19,6 +19,7 @@ from ..profiles.store import (
 )
 from ..recordings.offline import Learned, explain, learn_from
 from ..recordings.recording import read_recording
+from .shared.mapping import add_map, chosen_map, tell
 from .shared.road import add_road, required_road
 from .shared.settings import add_settings, apply_settings
 
@@ -34,8 +35,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--recording",
         required=True,
-        help="CSV with at least time_s, s_m, speed_mps and mode (OFF, STANDBY, ACTIVE, ...)",
+        help="CSV, Parquet or MDF4 with at least time_s, s_m, speed_mps and mode (OFF, STANDBY, "
+        "ACTIVE, ...); other names and units: --map",
     )
+    add_map(parser)
     parser.add_argument(
         "--profile-in", help="profile that the drive followed (default: the route's base profile)"
     )
@@ -60,8 +63,11 @@ def run(options: argparse.Namespace) -> None:
     stored = read_profile(options.profile_in) if options.profile_in else None
     function = DrivingFunction()
     apply_settings(function.record, options.settings)
+    mapping = chosen_map(options)
     present = None if options.force else present_profile(options.out)
-    learned = learn_from(read_recording(options.recording), route, stored, function)
+    recording = read_recording(options.recording, mapping)
+    tell(recording.notes)
+    learned = learn_from(recording, route, stored, function)
     _write(options, learned.profile, present)
     report = explain(learned)
     if options.json:

@@ -12,8 +12,10 @@ from ..function import DrivingFunction
 from ..profiles.store import read_profile
 from ..recordings.derived import completed
 from ..recordings.interventions import rates_of
+from ..recordings.mapping import RecordingMap
 from ..recordings.recording import Recording, read_recording
 from ..roads import Road, open_route
+from .shared.mapping import add_map, chosen_map, tell
 from .shared.road import add_road, chosen_road
 
 EXAMPLE: Final = (
@@ -33,6 +35,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--profile", type=Path, metavar="P.pldf", help="draw the newest state of this profile too"
     )
+    add_map(parser)
     add_road(parser, "road driven, for recordings without limits")
     parser.add_argument(
         "--out", type=Path, metavar="PNG", help="picture (default: beside the first recording)"
@@ -48,7 +51,8 @@ def run(options: argparse.Namespace) -> None:
     if len(options.recordings) > _COMPARED_MAX:
         options.wrong_usage(f"at most {_COMPARED_MAX} recordings fit into one picture")
     road = chosen_road(options)
-    recordings = [_complete(path, road) for path in options.recordings]
+    mapping = chosen_map(options)
+    recordings = [_complete(path, road, mapping) for path in options.recordings]
     named = dict(zip(names_of(options.recordings), recordings, strict=True))
     profile = read_profile(options.profile) if options.profile else None
     shares = [f"{name} {100 * rates_of(r).combined:.0f} %" for name, r in named.items()]
@@ -71,9 +75,10 @@ def names_of(paths: Sequence[Path]) -> list[str]:
     ]
 
 
-def _complete(path: Path, road: Road | None) -> Recording:
+def _complete(path: Path, road: Road | None, mapping: RecordingMap | None) -> Recording:
     """Read a recording; derive what a picture needs and the recording lacks."""
-    recording = read_recording(path)
+    recording = read_recording(path, mapping)
+    tell(recording.notes)
     missing = [name for name in _NEEDED if name not in recording]
     if missing and road is None:
         raise ModelError(

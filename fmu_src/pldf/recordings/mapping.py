@@ -131,9 +131,11 @@ def _lenient(ready: RecordingMap) -> RecordingMap:
     return replace(ready, columns=columns)
 
 
-def ready_text(name: str) -> str:
-    """Return the text of a ready map."""
-    return files(__package__).joinpath("maps", f"{name}.toml").read_text(encoding="utf-8")
+def map_bytes(path: str | Path) -> bytes:
+    """Return the content of a mapping file, or of the ready map of that name."""
+    if str(path) in ready_maps():
+        return files(__package__).joinpath("maps", f"{path}.toml").read_bytes()
+    return Path(path).read_bytes()
 
 
 def _checked(file: TomlFile, name: str) -> RecordingMap:

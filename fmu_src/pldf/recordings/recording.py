@@ -15,8 +15,10 @@ from ..findings import Finding
 from ..kernel.arrays import FloatArray
 from ..kernel.codes import MODE
 from .columns import COLUMNS
-from .mapping import RecordingMap
+from .mapping import RecordingMap, read_map
 from .reading import read_columns
+
+PathLike = str | os.PathLike[str]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,16 +65,19 @@ def _cells(recording: Recording) -> dict[str, list[Cell] | FloatArray]:
     return cells
 
 
-def read_recording(path: str | os.PathLike[str], mapping: RecordingMap | None = None) -> Recording:
+def read_recording(path: PathLike, mapping: RecordingMap | PathLike | None = None) -> Recording:
     """Return the columns that the file ``path`` has; unknown columns are passed over.
 
     Args:
         path: CSV, or with the optional packages Parquet (``.parquet``) or ASAM MDF4 (``.mf4``); or
             a structured NumPy array (``.npy``, ``.npz``).
-        mapping: what the columns are called there and which units they have; default: ``map.toml``
-            beside the file or in the folder of its study, else a ready map that fits, else ours.
+        mapping: what the columns are called there and which units they have: a mapping file, the
+            name of a ready map, or either as read; default: ``map.toml`` beside the file or in the
+            folder of its study, else a ready map that fits, else our names.
 
     Raises:
         ModelError: naming file, line, column and value of all that cannot be used.
     """
+    if mapping is not None and not isinstance(mapping, RecordingMap):
+        mapping = read_map(os.fspath(mapping))
     return Recording(*read_columns(Path(path), mapping))
