@@ -37,6 +37,7 @@ from .kernel import (
     lowering,
     modes,
     offsets,
+    outcomes,
     pieces,
     planner,
     preparation,
@@ -74,6 +75,7 @@ KERNEL_MODULES: tuple[ModuleType, ...] = (
     offsets,
     pieces,
     segments,
+    outcomes,
     learning,
 )
 

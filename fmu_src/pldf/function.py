@@ -28,6 +28,7 @@ from .kernel.learning import learn_drive
 from .kernel.preparation import adopt_learned, start_drive
 from .kernel.signals import signals_of, text_parameter
 from .kernel.state import PldfState
+from .outcomes import Outcomes, outcomes_of
 from .profiles.store import (
     STORE_VARIABLE,
     Iteration,
@@ -157,7 +158,10 @@ class DrivingFunction(Instance[PldfState]):
     def finish(self) -> None:
         """Learn from the drive and save the profile; called once at its end."""
         if drive.learns(self.record) and self.record.nodes >= 2 and self.stored is not None:
-            self._save(self.learn())
+            iteration = self.learn()
+            for line in self.outcomes().lines():
+                self.report("info", line)
+            self._save(iteration)
 
     def learn(self, kind: str = "drive") -> Iteration:
         """Return what the drive so far leaves for the next one, as the next iteration."""
@@ -166,6 +170,10 @@ class DrivingFunction(Instance[PldfState]):
         learn_drive(self.record, self.route, self.profile, self.trace, self.work, self.following)
         self.learned = next_iteration(self.record, self.profile, self.following, self.stored, kind)
         return self.learned
+
+    def outcomes(self) -> Outcomes:
+        """Return what became of each intervention, once ``learn`` was called."""
+        return outcomes_of(self.record, self.trace, self.following)
 
     def _open_store(self) -> ProfileStore | None:
         folder = self.texts.profile_store or os.environ.get(STORE_VARIABLE, "")

@@ -115,12 +115,30 @@ def test_show_newest_and_older_state(run: Run) -> None:
         ["learned", "offset", "of", "the", "set", "speed:"],
         ["from", "m", "to", "m", "mean", "km/h", "peak", "km/h", "lessons", "cut", "by"],
         ["700", "1000", "+5.0", "+5.0", "0", "-"],
+        ["bounds:"],
+        [
+            "held",
+            "at",
+            "108",
+            "km/h",
+            "from",
+            "120",
+            "to",
+            "170",
+            "m",
+            "by",
+            "legal",
+            "limit",
+            "+",
+            "tolerance",
+        ],
     ]
     _, out, _ = run("show", f"store/{NAME}", "--iteration", "0")
     assert out.splitlines()[2:] == [
         "iteration  0 of 2: base",
         "learned minus base speed: none",
         "learned offset of the set speed: none",
+        "bounds: none holds it",
     ]
 
 

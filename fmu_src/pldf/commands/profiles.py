@@ -17,6 +17,7 @@ from ..files.tables import table_csv, write_table
 from ..kernel.arrays import FloatArray
 from ..kernel.codes import BOUND
 from ..kernel.units import KMH_PER_MPS
+from ..outcomes import held_places, told_holds
 from ..profiles.store import (
     STORE_VARIABLE,
     ProfileRefused,
@@ -159,6 +160,7 @@ def _show(options: argparse.Namespace) -> None:
     print(f"iteration  {iteration.number} of {len(profile.iterations)}: {told}")
     _print_places("learned minus base speed", iteration.learned_mps - iteration.base_mps, iteration)
     _print_places("learned offset of the set speed", iteration.offset_mps, iteration)
+    _print_holds(iteration)
     if options.plot is not None:
         _plot(options.plot, profile, iteration)
         print(f"plot       {options.plot}")
@@ -180,6 +182,14 @@ def _print_places(title: str, difference_mps: FloatArray, iteration: Iteration) 
             f"{first:9} {last:9} {kmh.mean():+10.1f} {peak:+10.1f} {lessons:7}  "
             f"{_bounds(iteration.bound[first : last + 1])}"
         )
+
+
+def _print_holds(iteration: Iteration) -> None:
+    """Say where a bound, not the driver's wish, holds the learned speed."""
+    told = told_holds(held_places(iteration.bound, iteration.learned_mps))
+    print("bounds: none holds it" if not told else "bounds:")
+    for hold in told:
+        print(f"  {hold}")
 
 
 def _bounds(codes: FloatArray) -> str:

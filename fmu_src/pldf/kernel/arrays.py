@@ -103,3 +103,16 @@ class NextArrays(NamedTuple):
     set_wish_mps: Floats  # series k: offset from the legal limit that the driver set
     set_offset_mps: Floats  # series k: what was adopted of it
     set_outcome: Floats  # series k: what became of it (OUTCOME in codes)
+    taught_m: Floats  # pedal intervention k: how many nodes it shaped last
+    taught_from_m: Floats  # pedal intervention k: the first of them
+    taught_to_m: Floats  # pedal intervention k: the last of them
+    mean_change_mps: Floats  # pedal intervention k: of these nodes, against the profile driven
+    largest_change_mps: Floats  # pedal intervention k: the same; with its sign
+    hole_s: Floats  # pedal intervention k: time of the holes that cost it
+    hole_m: Floats  # pedal intervention k: length of the holes that cost it
+    hold_bound: Floats  # hold k, a run of nodes cut by one bound: which (BOUND in codes)
+    hold_intervention: Floats  # hold k: of which intervention's lesson, 0 = set speed
+    hold_from_m: Floats  # hold k: its first node
+    hold_to_m: Floats  # hold k: its last node
+    hold_low_mps: Floats  # hold k: lowest speed of the learned profile there
+    hold_high_mps: Floats  # hold k: highest speed of the learned profile there

@@ -10,6 +10,7 @@ from .bounds import hard_cap, keep_bounds
 from .codes import BOUND_NONE, OUTCOME_LEARNED
 from .lowering import UNMARKED
 from .offsets import adopt_offsets
+from .outcomes import tell_outcomes
 from .pieces import insert_pieces
 from .preparation import plan
 from .segments import learn_segments
@@ -42,6 +43,7 @@ def learn_drive(
     insert_pieces(st, route, trace, work, following.outcome)
     learn_segments(st, trace, work, following)
     _bound_segments(st, route, work, following, drive)
+    tell_outcomes(st, route, profile, trace, following)
 
 
 def copy_profile(profile: ProfileArrays, following: NextArrays) -> None:

@@ -148,6 +148,7 @@ class Memory:
     intervention_end_ns: int = nanoseconds(low=-1, start=-1, at_most="time_ns")
     gap_uncovered_ns: int = nanoseconds()
     set_series: int = whole(0, COUNT_MAX, at_most=NODES)  # of presses of the lever, once learned
+    holds: int = whole(0, COUNT_MAX, at_most=NODES)  # runs of nodes that a bound cut, once learned
     total_ns: int = nanoseconds()
     pedal_ns: int = nanoseconds(at_most="total_ns")
     set_speed_ns: int = nanoseconds(at_most="total_ns")

@@ -1,0 +1,111 @@
+"""What a drive taught, told per intervention: where, how much, and held by which bound."""
+
+from __future__ import annotations
+
+from .arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays
+from .codes import OUTCOME_NOT_MOVED
+from .interpolation import cell_at
+from .state import PldfState
+from .stretch import stretch_factor, stretched_position
+
+
+def tell_outcomes(
+    st: PldfState,
+    route: RouteArrays,
+    profile: ProfileArrays,
+    trace: TraceArrays,
+    following: NextArrays,
+) -> None:
+    """Fill what ``following`` tells per pedal intervention and per place that a bound held.
+
+    ``profile`` holds the profile driven: changes are told against it. The number of holds goes
+    into ``st.holds``.
+    """
+    for k in range(st.drive_interventions):
+        following.taught_m[k] = 0.0
+        following.taught_from_m[k] = 0.0
+        following.taught_to_m[k] = 0.0
+        following.mean_change_mps[k] = 0.0
+        following.largest_change_mps[k] = 0.0
+        following.hole_s[k] = 0.0
+        following.hole_m[k] = 0.0
+        if following.outcome[k] != OUTCOME_NOT_MOVED:
+            _measure_hole(st, route, trace, following, k)
+    _sum_changes(st, profile, following)
+    _find_holds(st, following)
+
+
+def _measure_hole(
+    st: PldfState, route: RouteArrays, trace: TraceArrays, following: NextArrays, k: int
+) -> None:
+    """Measure the holes that touch the stretched piece of intervention ``k``, in s and m.
+
+    The samples around a hole are not known, only the nodes: each up to a metre before them.
+    """
+    nodes = len(trace.gap)
+    start = stretched_position(
+        trace.start_m[k], trace.end_m[k], stretch_factor(st, route, trace, k)
+    )
+    end = st.first_node + st.nodes - 1
+    i = max(cell_at(nodes, start), st.first_node)
+    last = min(cell_at(nodes, trace.end_m[k]), end)
+    while i > st.first_node and trace.gap[i] > 0.0 and trace.gap[i - 1] > 0.0:
+        i -= 1
+    while i <= last or (i <= end and trace.gap[i] > 0.0):
+        if trace.gap[i] > 0.0:
+            following.hole_m[k] += 1.0
+            following.hole_s[k] += trace.time_s[i] - trace.time_s[max(i - 1, st.first_node)]
+        i += 1
+
+
+def _sum_changes(st: PldfState, profile: ProfileArrays, following: NextArrays) -> None:
+    """Sum up, per intervention, how the nodes that it shaped last differ from those driven."""
+    drive = st.profile_iteration + 1.0
+    for i in range(len(following.learned_mps)):
+        k = int(following.intervention[i]) - 1
+        if following.drive[i] == drive and k >= 0:
+            change = following.learned_mps[i] - profile.learned_mps[i]
+            if following.taught_m[k] == 0.0:
+                following.taught_from_m[k] = float(i)
+            following.taught_to_m[k] = float(i)
+            following.taught_m[k] += 1.0
+            following.mean_change_mps[k] += change
+            if abs(change) > abs(following.largest_change_mps[k]):
+                following.largest_change_mps[k] = change
+    for k in range(st.drive_interventions):
+        following.mean_change_mps[k] /= max(following.taught_m[k], 1.0)
+
+
+def _find_holds(st: PldfState, following: NextArrays) -> None:
+    """Note each run of nodes of one intervention (0: of the lever) that the same bound cut last."""
+    st.holds = 0
+    for i in range(len(following.bound)):
+        if following.drive[i] != st.profile_iteration + 1.0 or following.bound[i] <= 0.0:
+            continue
+        if i == 0 or st.holds == 0 or not _goes_on(following, st.holds - 1, i):
+            _begin_hold(following, st.holds, i)
+            st.holds += 1
+        _extend_hold(following, st.holds - 1, i)
+
+
+def _goes_on(following: NextArrays, hold: int, i: int) -> bool:
+    return (
+        following.hold_to_m[hold] == i - 1.0
+        and following.hold_bound[hold] == following.bound[i]
+        and following.hold_intervention[hold] == following.intervention[i]
+    )
+
+
+def _begin_hold(following: NextArrays, hold: int, i: int) -> None:
+    following.hold_bound[hold] = following.bound[i]
+    following.hold_intervention[hold] = following.intervention[i]
+    following.hold_from_m[hold] = float(i)
+    following.hold_low_mps[hold] = following.learned_mps[i]
+    following.hold_high_mps[hold] = following.learned_mps[i]
+
+
+def _extend_hold(following: NextArrays, hold: int, i: int) -> None:
+    speed = following.learned_mps[i]
+    following.hold_to_m[hold] = float(i)
+    following.hold_low_mps[hold] = min(following.hold_low_mps[hold], speed)
+    following.hold_high_mps[hold] = max(following.hold_high_mps[hold], speed)

@@ -1,0 +1,271 @@
+"""What became of each intervention of a drive, and why: one structure, one form in words.
+
+The kernel finds the figures (``kernel/outcomes``). The words are printf formats, because the native
+FMUs print the same lines with them; speeds are km/h there, in the structure m/s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from .kernel.arrays import FloatArray, NextArrays, TraceArrays
+from .kernel.codes import (
+    BOUND_ACCEL,
+    BOUND_DECEL,
+    BOUND_JERK,
+    BOUND_LATERAL_ACCEL,
+    BOUND_LEGAL_LIMIT,
+    BOUND_NONE,
+    OUTCOME_HOLE,
+    OUTCOME_LEARNED,
+    OUTCOME_NOT_ELIGIBLE,
+    OUTCOME_STOP,
+    OUTCOME_TAKEN_BACK,
+)
+from .kernel.state import PldfState
+from .kernel.units import KMH_PER_MPS
+
+BOUND_WORDS: Final = {
+    BOUND_NONE: "no bound",
+    BOUND_LATERAL_ACCEL: "lateral acceleration",
+    BOUND_LEGAL_LIMIT: "legal limit + tolerance",
+    BOUND_ACCEL: "acceleration",
+    BOUND_DECEL: "deceleration",
+    BOUND_JERK: "jerk",
+}
+
+# In people's words.
+TEXTS: Final = {
+    "PEDAL": "pedal intervention %d, %.0f to %.0f m: ",
+    "TRUNCATED": "(not over when the drive ended) ",
+    "NOT_MOVED": "not learned: the car did not move",
+    "LEARNED": "learned from %.0f to %.0f m, on average %+.1f km/h, at most %+.1f km/h",
+    "HOLE": "not learned: a hole of %.1f s in the recording costs %.0f m",
+    "STOP": "not learned: the car was slower than %.0f km/h, a situation, not a wish",
+    "NOT_ELIGIBLE": "not learned: learning was not allowed there",
+    "SET_SPEED": "set speed, %.0f to %.0f m: ",
+    "SET_LEARNED": "%+.1f km/h learned",
+    "SET_CUT": "%+.1f km/h learned of the %+.1f km/h set, held by legal limit + tolerance",
+    "SET_NOT_ELIGIBLE": "%+.1f km/h not learned: learning was not allowed there",
+    "SET_TAKEN_BACK": "not learned: taken back at once",
+    "PLAN": "plan with the set speed: ",
+    "SEPARATOR": "; ",
+    "HELD": "held at %.0f km/h from %.0f to %.0f m by %s",
+    "HELD_BETWEEN": "held at %.0f to %.0f km/h from %.0f to %.0f m by %s",
+}
+
+# Transitions shorter than this are left out of the words: the bounds trim an edge here and there.
+TRANSITION_MIN_M: Final = 10
+SAME_OFFSET_MPS: Final = 1e-9
+
+
+class Hold(NamedTuple):
+    """A run of nodes whose learned speed the same bound cut last.
+
+    Attributes:
+        bound: which (BOUND in ``kernel.codes``).
+        from_m, to_m: its first and last node.
+        low_mps, high_mps: lowest and highest learned speed there.
+    """
+
+    bound: int
+    from_m: float
+    to_m: float
+    low_mps: float
+    high_mps: float
+
+
+class PedalOutcome(NamedTuple):
+    """What became of a pedal intervention.
+
+    Attributes:
+        number: 1, 2, ... in the order of the drive.
+        start_m, end_m: where the driver intervened.
+        truncated: it was not over when the drive ended.
+        outcome: OUTCOME in ``kernel.codes``.
+        learned_m: how many nodes of the profile it shaped last.
+        learned_from_m, learned_to_m: the first and the last of them.
+        mean_change_mps, largest_change_mps: of these nodes, against the profile driven.
+        hole_s, hole_m: time and length of the holes that cost it.
+        holds: bounds that cut its lesson.
+    """
+
+    number: int
+    start_m: float
+    end_m: float
+    truncated: bool
+    outcome: int
+    learned_m: int
+    learned_from_m: float
+    learned_to_m: float
+    mean_change_mps: float
+    largest_change_mps: float
+    hole_s: float
+    hole_m: float
+    holds: tuple[Hold, ...]
+
+
+class SetSpeedOutcome(NamedTuple):
+    """What became of a series of presses of the lever.
+
+    Attributes:
+        from_m, to_m: where its offset holds, or would have held.
+        wish_mps: offset from the legal limit that the driver set.
+        offset_mps: what was adopted of it.
+        outcome: OUTCOME in ``kernel.codes``.
+    """
+
+    from_m: float
+    to_m: float
+    wish_mps: float
+    offset_mps: float
+    outcome: int
+
+
+class Outcomes(NamedTuple):
+    """What became of all interventions of a drive.
+
+    Attributes:
+        pedals: in the order of the drive.
+        set_speeds: in the order of the drive.
+        plan_holds: bounds that cut the plan with the learned set speeds.
+        slowest_mps: below this speed the car stops, which is no wish.
+    """
+
+    pedals: tuple[PedalOutcome, ...]
+    set_speeds: tuple[SetSpeedOutcome, ...]
+    plan_holds: tuple[Hold, ...]
+    slowest_mps: float
+
+    def lines(self) -> Iterator[str]:
+        """Yield one line for people per intervention."""
+        for pedal in self.pedals:
+            yield TEXTS["PEDAL"] % (pedal.number, pedal.start_m, pedal.end_m) + self.words(pedal)
+        for series in self.set_speeds:
+            yield TEXTS["SET_SPEED"] % (series.from_m, series.to_m) + set_speed_words(series)
+        told = told_holds(self.plan_holds)
+        if told:
+            yield TEXTS["PLAN"] + TEXTS["SEPARATOR"].join(told)
+
+    def words(self, pedal: PedalOutcome) -> str:
+        """Return what became of ``pedal``, without its number and place."""
+        told = TEXTS["TRUNCATED"] if pedal.truncated else ""
+        if pedal.outcome == OUTCOME_LEARNED:
+            told += TEXTS["LEARNED"] % (
+                pedal.learned_from_m,
+                pedal.learned_to_m,
+                _kmh(pedal.mean_change_mps),
+                _kmh(pedal.largest_change_mps),
+            )
+            return TEXTS["SEPARATOR"].join([told, *told_holds(pedal.holds)])
+        if pedal.outcome == OUTCOME_HOLE:
+            return told + TEXTS["HOLE"] % (pedal.hole_s, pedal.hole_m)
+        if pedal.outcome == OUTCOME_STOP:
+            return told + TEXTS["STOP"] % _kmh(self.slowest_mps)
+        if pedal.outcome == OUTCOME_NOT_ELIGIBLE:
+            return told + TEXTS["NOT_ELIGIBLE"]
+        return told + TEXTS["NOT_MOVED"]
+
+
+def outcomes_of(st: PldfState, trace: TraceArrays, following: NextArrays) -> Outcomes:
+    """Return what the kernel found out when it learned from a drive."""
+    holds = [_hold(following, k) for k in range(st.holds)]
+    owners = [int(following.hold_intervention[k]) for k in range(st.holds)]
+    held: dict[int, list[Hold]] = {}
+    for owner, hold in zip(owners, holds, strict=True):
+        held.setdefault(owner, []).append(hold)
+    pedals = (
+        _pedal(st, trace, following, k, tuple(held.get(k + 1, ())))
+        for k in range(st.drive_interventions)
+    )
+    series = (_set_speed(following, k) for k in range(st.set_series))
+    return Outcomes(tuple(pedals), tuple(series), tuple(held.get(0, ())), st.learning_speed_min_mps)
+
+
+def _hold(following: NextArrays, k: int) -> Hold:
+    return Hold(
+        int(following.hold_bound[k]),
+        following.hold_from_m[k],
+        following.hold_to_m[k],
+        following.hold_low_mps[k],
+        following.hold_high_mps[k],
+    )
+
+
+def _pedal(
+    st: PldfState, trace: TraceArrays, following: NextArrays, k: int, holds: tuple[Hold, ...]
+) -> PedalOutcome:
+    return PedalOutcome(
+        number=k + 1,
+        start_m=trace.start_m[k],
+        end_m=trace.end_m[k],
+        truncated=bool(st.intervening) and k == st.drive_interventions - 1,
+        outcome=int(following.outcome[k]),
+        learned_m=int(following.taught_m[k]),
+        learned_from_m=following.taught_from_m[k],
+        learned_to_m=following.taught_to_m[k],
+        mean_change_mps=following.mean_change_mps[k],
+        largest_change_mps=following.largest_change_mps[k],
+        hole_s=following.hole_s[k],
+        hole_m=following.hole_m[k],
+        holds=holds,
+    )
+
+
+def _set_speed(following: NextArrays, k: int) -> SetSpeedOutcome:
+    return SetSpeedOutcome(
+        following.set_from_m[k],
+        following.set_to_m[k],
+        following.set_wish_mps[k],
+        following.set_offset_mps[k],
+        int(following.set_outcome[k]),
+    )
+
+
+def set_speed_words(series: SetSpeedOutcome) -> str:
+    """Return what became of a series of presses, without its place."""
+    offset, wish = _kmh(series.offset_mps), _kmh(series.wish_mps)
+    if series.outcome == OUTCOME_TAKEN_BACK:
+        return TEXTS["SET_TAKEN_BACK"]
+    if series.outcome == OUTCOME_NOT_ELIGIBLE:
+        return TEXTS["SET_NOT_ELIGIBLE"] % wish
+    if series.offset_mps < series.wish_mps - SAME_OFFSET_MPS:
+        return TEXTS["SET_CUT"] % (offset, wish)
+    return TEXTS["SET_LEARNED"] % offset
+
+
+def told_holds(holds: Iterable[Hold]) -> list[str]:
+    """Return the holds in words, but for short transitions."""
+    return [hold_words(hold) for hold in holds if _is_told(hold)]
+
+
+def hold_words(hold: Hold) -> str:
+    """Return where a bound holds the profile, and at which speed."""
+    place = (hold.from_m, hold.to_m, BOUND_WORDS[hold.bound])
+    low, high = _kmh(hold.low_mps), _kmh(hold.high_mps)
+    if high - low < 1.0:
+        return TEXTS["HELD"] % (low, *place)
+    return TEXTS["HELD_BETWEEN"] % (low, high, *place)
+
+
+def held_places(bound: FloatArray, speed_mps: FloatArray) -> list[Hold]:
+    """Return the holds of a stored profile: which bound cut each node, and its speed, per node."""
+    first = np.flatnonzero(np.diff(bound, prepend=np.nan) != 0.0)
+    behind = np.append(first[1:], len(bound))
+    return [
+        Hold(int(bound[a]), a, b - 1.0, speed_mps[a:b].min(), speed_mps[a:b].max())
+        for a, b in zip(first.tolist(), behind.tolist(), strict=True)
+        if bound[a] > BOUND_NONE
+    ]
+
+
+def _is_told(hold: Hold) -> bool:
+    transition = hold.bound not in (BOUND_LATERAL_ACCEL, BOUND_LEGAL_LIMIT)
+    return not transition or hold.to_m - hold.from_m >= TRANSITION_MIN_M
+
+
+def _kmh(mps: float) -> float:
+    return KMH_PER_MPS * mps
