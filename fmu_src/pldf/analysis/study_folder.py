@@ -129,4 +129,4 @@ class StudyFolder:
             return recording
         function = DrivingFunction()
         function.prepare(self.route)
-        return completed(recording, function.route, function.profile)
+        return completed(recording, function, str(path))

@@ -86,4 +86,4 @@ def _complete(path: Path, road: Road | None, mapping: RecordingMap | None) -> Re
         )
     function = DrivingFunction()
     function.prepare(road.route if road else open_route("study"))
-    return completed(recording, function.route, function.profile)
+    return completed(recording, function, str(path))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import nan
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
@@ -9,13 +10,15 @@ from numpy.typing import NDArray
 
 from ..kernel.arrays import FloatArray
 from ..kernel.codes import ACTIVE, GAS_OVERRIDE, STANDBY
+from ..kernel.parameters import LearningParameters
 from .recording import Recording
 
 Kind = Literal["gas", "brake", "set_speed"]
 
 GAP_S: Final = 0.3  # shorter gaps between pedal interventions merge: pedal bounce
 PRESSED: Final = 0.02  # pedal travel from which a pedal counts as pressed
-OFFSET_MIN_MPS: Final = 1e-3  # a set-speed offset smaller than this is rounding
+# A set-speed offset up to this is rounding.
+OFFSET_TOLERANCE_MPS: Final = LearningParameters().learning_offset_tolerance_mps
 
 
 class Interval(NamedTuple):
@@ -59,20 +62,30 @@ def pedal_interventions(recording: Recording) -> list[Interval]:
 
 
 def set_speed_interventions(recording: Recording) -> list[Interval]:
-    """Return the stretches with an offset of the set speed that was set in this drive."""
-    active = np.abs(recording["set_speed_offset_mps"]) > OFFSET_MIN_MPS
+    """Return the stretches with an offset of the set speed that was set in this drive.
+
+    None if the recording has no offsets: then it is not known.
+    """
+    if "set_speed_offset_mps" not in recording:
+        return []
+    active = np.abs(recording["set_speed_offset_mps"]) > OFFSET_TOLERANCE_MPS
     last_row = len(recording) - 1
     return [Interval("set_speed", a, min(b, last_row)) for a, b in _runs(active)]
 
 
 def rates_of(recording: Recording) -> Rates:
-    """Return the intervention rates: time shares between the first and the last row."""
+    """Return the intervention rates: time shares between the first and the last row.
+
+    Without offsets of the set speed, two of them are NaN: not known.
+    """
     time = recording["time_s"]
     pedal = _marked(pedal_interventions(recording), len(recording))
     offset = _marked(set_speed_interventions(recording), len(recording))
     passed = np.diff(time)
     total = time[-1] - time[0]
     shares = [float(np.sum(passed[m[:-1]]) / total) for m in (pedal, offset, pedal | offset)]
+    if "set_speed_offset_mps" not in recording:
+        return Rates(shares[0], nan, nan)
     return Rates(*shares)
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ..errors import ModelError
+from ..findings import Finding
 from ..function import DrivingFunction
 from ..instance import view
 from ..kernel.arrays import FloatArray
@@ -21,6 +23,7 @@ from .derived import completed
 from .recording import Recording
 
 SAME_MPS = 1e-9
+FOLLOWED_KMH = 1.0  # a profile that differs by more from the base profile was learned
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,11 +34,13 @@ class Learned:
         function: the instance that learned, with trace, rates and the profile driven.
         profile: what was known before, with the new iteration added.
         iteration: that iteration.
+        notes: how the recording was read, what was derived, and what it is taken to have followed.
     """
 
     function: DrivingFunction
     profile: StoredProfile
     iteration: Iteration
+    notes: tuple[Finding, ...] = ()
 
 
 def learn_from(
@@ -43,6 +48,7 @@ def learn_from(
     route: Route,
     stored: StoredProfile | None = None,
     function: DrivingFunction | None = None,
+    file: str = "",
 ) -> Learned:
     """Apply SPAA to ``recording`` of a drive on ``route`` that followed the newest of ``stored``.
 
@@ -51,13 +57,16 @@ def learn_from(
         route: the route driven.
         stored: profile file of the driver; None: the drive followed the base profile.
         function: an instance whose parameters count (default: all defaults).
+        file: of the recording, for the notes.
 
     Raises:
         ModelError: the recording is not on the route, or ``stored`` belongs to another route.
     """
     function = function or DrivingFunction()
     function.prepare(route)
+    taken: list[Finding] = []
     if stored is None:
+        taken += _taken_for_base(recording, function, file)
         base = np.array(function.profile.base_mps)
         stored = StoredProfile(function.record.driver_id, fingerprint(route), base)
     elif stored.route != fingerprint(route):
@@ -66,7 +75,8 @@ def learn_from(
             f"({fingerprint(route)}); give the route of that drive or leave out --profile-in"
         )
     function.follow(stored)
-    columns = completed(recording, function.route, function.profile).columns
+    whole = completed(recording, function, file)
+    columns = whole.columns
     samples = Samples(*(view(np.ascontiguousarray(columns[name])) for name in Samples._fields))
     replay(function.record, function.route, function.trace, samples)
     if function.record.nodes < 2:
@@ -75,7 +85,31 @@ def learn_from(
             f"advance on {route.name} (0 to {route.length_m:g} m)"
         )
     iteration = function.learn("learn")
-    return Learned(function, stored.with_iteration(iteration), iteration)
+    return Learned(function, stored.with_iteration(iteration), iteration, (*whole.notes, *taken))
+
+
+def _taken_for_base(
+    recording: Recording, function: DrivingFunction, file: str
+) -> Iterator[Finding]:
+    """Yield what speaks against a drive with the base profile, or that nothing tells."""
+    way_out = "name what the drive followed with --profile-in"
+    if "profile_mps" in recording:
+        node_m = np.arange(float(len(function.profile.base_mps)))
+        base = np.interp(recording["s_m"], node_m, np.asarray(function.profile.base_mps))
+        off = KMH_PER_MPS * float(np.max(np.abs(recording["profile_mps"] - base)))
+        if off > FOLLOWED_KMH:
+            yield Finding(
+                "warning", file, 0, "profile_mps",
+                f"up to {off:.1f} km/h off the base profile: the drive followed a learned profile",
+                "it is taken to have followed the base profile, so what was learned before is "
+                "learned as if the driver wished it anew", way_out,
+            )  # fmt: skip
+    elif "set_speed_offset_mps" not in recording:
+        yield Finding(
+            "note", file, 0, "",
+            "no profile named, so the drive counts as driven with the base profile",
+            "an offset that had been learned before would count as set by the driver", way_out,
+        )  # fmt: skip
 
 
 def explain(learned: Learned) -> dict[str, Any]:
