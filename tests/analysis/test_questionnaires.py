@@ -182,6 +182,15 @@ def test_an_empty_row_is_passed_over_and_told(tmp_path: Path) -> None:
     assert set(found.items["laan_1"]) == {("P1", "A")}
 
 
+def test_a_questionnaire_without_answers_is_told(tmp_path: Path) -> None:
+    for text in (laan({}), laan({"P1,A": ("",) * 9})):
+        found = read(tmp_path, text)
+        assert found.scores == {"usefulness": {}, "satisfying": {}}
+        assert [note.text for note in found.notes if note.severity == "warning"] == [
+            "no answers below the header"
+        ]
+
+
 def test_names_and_answers_of_a_laboratory(tmp_path: Path) -> None:
     """Boxes from -2 to +2 from left to right, German names, systems in words, test runs."""
     header = "Kürzel;Bedingung;Art;" + ";".join(f"Frage {n}" for n in range(1, 10))

@@ -126,6 +126,9 @@ def _notes(table: Table, heading: int, counted: int, filled: int) -> Iterator[Fi
         yield _note(table.path, f"{more} are the header: {what}")
     if others := len(table) - heading - counted:
         yield _note(table.path, f"{others} rows passed over, as the mapping file wants ('only')")
+    if not filled:
+        text, cost = "no answers below the header", "nobody has a score"
+        yield Finding("warning", str(table.path), 0, "", text, cost, "export the answers again")
     if empty := counted - filled:
         yield _note(table.path, f"{empty} rows without any answer passed over")
 
