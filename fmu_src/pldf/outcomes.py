@@ -1,12 +1,14 @@
 """What became of each intervention of a drive, and why: one structure, one form in words.
 
-The kernel finds the figures (``kernel/outcomes``). The words are printf formats, because the native
-FMUs print the same lines with them; speeds are km/h there, in the structure m/s.
+The kernel finds the figures (``kernel/outcomes``). The words are printf formats: the native FMUs
+print the same lines with them (``build/runtime/outcome.c``). They tell speeds in km/h; the
+structure has m/s.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from math import floor
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -37,26 +39,29 @@ BOUND_WORDS: Final = {
     BOUND_JERK: "jerk",
 }
 
-# In people's words.
+# In people's words: %d takes a whole number of m or km/h, %s a name or a number with one decimal.
 TEXTS: Final = {
-    "PEDAL": "pedal intervention %d, %.0f to %.0f m: ",
+    "PEDAL": "pedal intervention %d, %d to %d m: ",
     "TRUNCATED": "(not over when the drive ended) ",
     "NOT_MOVED": "not learned: the car did not move",
-    "LEARNED": "learned from %.0f to %.0f m, on average %+.1f km/h, at most %+.1f km/h",
-    "HOLE": "not learned: a hole of %.1f s in the recording costs %.0f m",
-    "STOP": "not learned: the car was slower than %.0f km/h, a situation, not a wish",
+    "LEARNED": "learned from %d to %d m, on average %s km/h, at most %s km/h",
+    "HOLE": "not learned: a hole of %s s in the recording costs %d m",
+    "STOP": "not learned: the car was slower than %d km/h, a situation, not a wish",
     "NOT_ELIGIBLE": "not learned: learning was not allowed there",
-    "SET_SPEED": "set speed, %.0f to %.0f m: ",
-    "SET_LEARNED": "%+.1f km/h learned",
-    "SET_CUT": "%+.1f km/h learned of the %+.1f km/h set, held by legal limit + tolerance",
-    "SET_NOT_ELIGIBLE": "%+.1f km/h not learned: learning was not allowed there",
+    "SET_SPEED": "set speed, %d to %d m: ",
+    "SET_LEARNED": "%s km/h learned",
+    "SET_CUT": "%s km/h learned of the %s km/h set, held by legal limit + tolerance",
+    "SET_NOT_ELIGIBLE": "%s km/h not learned: learning was not allowed there",
     "SET_TAKEN_BACK": "not learned: taken back at once",
     "PLAN": "plan with the set speed: ",
     "SEPARATOR": "; ",
-    "HELD": "held at %.0f km/h from %.0f to %.0f m by %s",
-    "HELD_BETWEEN": "held at %.0f to %.0f km/h from %.0f to %.0f m by %s",
+    "HELD": "held at %d km/h from %d to %d m by %s",
+    "HELD_BETWEEN": "held at %d to %d km/h from %d to %d m by %s",
+    "MORE": "held at %d more places",
 }
 
+# Of one intervention, so that its line stays readable.
+HOLDS_TOLD: Final = 10
 # Transitions shorter than this are left out of the words: the bounds trim an edge here and there.
 TRANSITION_MIN_M: Final = 10
 SAME_OFFSET_MPS: Final = 1e-9
@@ -143,10 +148,12 @@ class Outcomes(NamedTuple):
     def lines(self) -> Iterator[str]:
         """Yield one line for people per intervention."""
         for pedal in self.pedals:
-            yield TEXTS["PEDAL"] % (pedal.number, pedal.start_m, pedal.end_m) + self.words(pedal)
+            place = whole(pedal.start_m), whole(pedal.end_m)
+            yield TEXTS["PEDAL"] % (pedal.number, *place) + self.words(pedal)
         for series in self.set_speeds:
-            yield TEXTS["SET_SPEED"] % (series.from_m, series.to_m) + set_speed_words(series)
-        told = told_holds(self.plan_holds)
+            place = whole(series.from_m), whole(series.to_m)
+            yield TEXTS["SET_SPEED"] % place + set_speed_words(series)
+        told = _first(told_holds(self.plan_holds))
         if told:
             yield TEXTS["PLAN"] + TEXTS["SEPARATOR"].join(told)
 
@@ -155,16 +162,16 @@ class Outcomes(NamedTuple):
         told = TEXTS["TRUNCATED"] if pedal.truncated else ""
         if pedal.outcome == OUTCOME_LEARNED:
             told += TEXTS["LEARNED"] % (
-                pedal.learned_from_m,
-                pedal.learned_to_m,
-                _kmh(pedal.mean_change_mps),
-                _kmh(pedal.largest_change_mps),
+                whole(pedal.learned_from_m),
+                whole(pedal.learned_to_m),
+                signed(KMH_PER_MPS * pedal.mean_change_mps),
+                signed(KMH_PER_MPS * pedal.largest_change_mps),
             )
-            return TEXTS["SEPARATOR"].join([told, *told_holds(pedal.holds)])
+            return TEXTS["SEPARATOR"].join([told, *_first(told_holds(pedal.holds))])
         if pedal.outcome == OUTCOME_HOLE:
-            return told + TEXTS["HOLE"] % (pedal.hole_s, pedal.hole_m)
+            return told + TEXTS["HOLE"] % (tenths(pedal.hole_s), whole(pedal.hole_m))
         if pedal.outcome == OUTCOME_STOP:
-            return told + TEXTS["STOP"] % _kmh(self.slowest_mps)
+            return told + TEXTS["STOP"] % whole(KMH_PER_MPS * self.slowest_mps)
         if pedal.outcome == OUTCOME_NOT_ELIGIBLE:
             return told + TEXTS["NOT_ELIGIBLE"]
         return told + TEXTS["NOT_MOVED"]
@@ -227,7 +234,8 @@ def _set_speed(following: NextArrays, k: int) -> SetSpeedOutcome:
 
 def set_speed_words(series: SetSpeedOutcome) -> str:
     """Return what became of a series of presses, without its place."""
-    offset, wish = _kmh(series.offset_mps), _kmh(series.wish_mps)
+    offset = signed(KMH_PER_MPS * series.offset_mps)
+    wish = signed(KMH_PER_MPS * series.wish_mps)
     if series.outcome == OUTCOME_TAKEN_BACK:
         return TEXTS["SET_TAKEN_BACK"]
     if series.outcome == OUTCOME_NOT_ELIGIBLE:
@@ -244,9 +252,9 @@ def told_holds(holds: Iterable[Hold]) -> list[str]:
 
 def hold_words(hold: Hold) -> str:
     """Return where a bound holds the profile, and at which speed."""
-    place = (hold.from_m, hold.to_m, BOUND_WORDS[hold.bound])
-    low, high = _kmh(hold.low_mps), _kmh(hold.high_mps)
-    if high - low < 1.0:
+    place = (whole(hold.from_m), whole(hold.to_m), BOUND_WORDS[hold.bound])
+    low, high = whole(KMH_PER_MPS * hold.low_mps), whole(KMH_PER_MPS * hold.high_mps)
+    if high == low:
         return TEXTS["HELD"] % (low, *place)
     return TEXTS["HELD_BETWEEN"] % (low, high, *place)
 
@@ -267,5 +275,26 @@ def _is_told(hold: Hold) -> bool:
     return not transition or hold.to_m - hold.from_m >= TRANSITION_MIN_M
 
 
-def _kmh(mps: float) -> float:
-    return KMH_PER_MPS * mps
+def _first(told: list[str]) -> list[str]:
+    """Return what fits into one line."""
+    more = len(told) - HOLDS_TOLD
+    return told if more <= 0 else [*told[:HOLDS_TOLD], TEXTS["MORE"] % more]
+
+
+# The native FMUs round in the same way, and whatever the importer's locale: so not by printf.
+
+
+def whole(value: float) -> int:
+    """Return the nearest whole number."""
+    return floor(value + 0.5)
+
+
+def tenths(value: float) -> str:
+    """Return the absolute value with one decimal."""
+    count = whole(10.0 * abs(value))
+    return f"{count // 10}.{count % 10}"
+
+
+def signed(value: float) -> str:
+    """Return the value with sign and one decimal."""
+    return ("-" if whole(10.0 * value) < 0 else "+") + tenths(value)

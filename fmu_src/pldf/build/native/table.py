@@ -13,10 +13,12 @@ from typing import Any, Final
 from ...fmi.phases import Phase
 from ...fmi.session import STEP_MAX_S
 from ...function import LEARNED
-from ...kernel.arrays import NextArrays, ProfileArrays
-from ...kernel.codes import LOCALIZATION, PROFILE_STATUS
+from ...kernel.arrays import NextArrays, ProfileArrays, TraceArrays
+from ...kernel.codes import BOUND, LOCALIZATION, OUTCOME, PROFILE_STATUS
 from ...kernel.ranges import LAST_NODE, NODES, Range, columns_of, ranges_of
 from ...kernel.signals import Signal, by_reference, time_reference, variables_of
+from ...kernel.units import KMH_PER_MPS
+from ...outcomes import BOUND_WORDS, HOLDS_TOLD, SAME_OFFSET_MPS, TEXTS, TRANSITION_MIN_M
 from ...profiles.file_parts import ALIGNMENT, CHECKSUM_SIZE, COLUMNS, NODES_MAX, Column
 from ...profiles.profile_format_1 import COLUMNS_1
 from ...profiles.stored_profile import KINDS
@@ -29,6 +31,12 @@ _KINDS: Final = {
     "Boolean": "KIND_BOOLEAN",
     "String": "KIND_STRING",
 }
+_CODES: Final = {
+    "LOCALIZATION": LOCALIZATION,
+    "PROFILE_STATUS": PROFILE_STATUS,
+    "OUTCOME": OUTCOME,
+    "BOUND": BOUND,
+}
 # Field of the C struct, field of the record.
 _LEARNING_CELLS: Final = {
     "driver_id": "driver_id",
@@ -38,6 +46,9 @@ _LEARNING_CELLS: Final = {
     "nodes": "nodes",
     "intervening": "intervening",
     "interventions": "drive_interventions",
+    "set_series": "set_series",
+    "holds": "holds",
+    "speed_min": "learning_speed_min_mps",
     "profile_iteration": "profile_iteration",
     "profile_status": "profile_status",
 }
@@ -58,13 +69,23 @@ def header(model: NativeModel) -> str:
         "NODES_MAX": NODES_MAX,
         "ALIGNMENT": ALIGNMENT,
         "CHECKSUM_SIZE": CHECKSUM_SIZE,
+        "HOLDS_TOLD": HOLDS_TOLD,
+        "TRANSITION_MIN_M": TRANSITION_MIN_M,
+        **{f"TRACE_{name.upper()}": at for at, name in enumerate(TraceArrays._fields)},
+        **{f"NEXT_{name.upper()}": at for at, name in enumerate(NextArrays._fields)},
     }
     lines = [f"enum {{ {name} = {size} }};" for name, size in sizes.items()]
-    for prefix, codes in (("LOCALIZATION", LOCALIZATION), ("PROFILE_STATUS", PROFILE_STATUS)):
+    for prefix, codes in _CODES.items():
         names = (f"{prefix}_{item}" for item in codes.items)
         lines.append(f"enum {{ {', '.join(names)} }};")
     lines.append(f"typedef enum {{ {', '.join(phase.name for phase in Phase)} }} Phase;")
-    lines.append(f"#define STEP_MAX_S {_number(STEP_MAX_S)}")
+    numbers = {
+        "STEP_MAX_S": STEP_MAX_S,
+        "KMH_PER_MPS": KMH_PER_MPS,
+        "SAME_OFFSET_MPS": SAME_OFFSET_MPS,
+    }
+    lines += [f"#define {name} {_number(value)}" for name, value in numbers.items()]
+    lines += [f"#define TEXT_{name} {_text(text)}" for name, text in TEXTS.items()]
     return "\n".join([*lines, ""])
 
 
@@ -83,6 +104,9 @@ def source(model: NativeModel, guid: str, token: str) -> str:
     lines += _texts("const char *const phase_names", (phase.name for phase in Phase))
     lines += _array("const ProfileColumn profile_columns", map(_column, COLUMNS))
     lines += _texts("const char *const profile_kinds", KINDS)
+    lines += _texts(
+        "const char *const bound_words", (BOUND_WORDS[code] for code in range(len(BOUND.items)))
+    )
     learning = "learn" in model.entries
     if learning:
         lines += _array("static const Bound bounds", (_references(p, model) for p in model.bounds))
@@ -217,7 +241,8 @@ def _learning(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]
     yield "base_column", str(model.first(ProfileArrays, "base_mps"))
     # Both times the columns of LEARNED follow one another, as in the file.
     yield "learned_column", str(model.first(ProfileArrays, "learned_mps"))
-    yield "following_column", str(model.first(NextArrays, "learned_mps"))
+    yield "trace_column", str(model.first(TraceArrays))
+    yield "next_column", str(model.first(NextArrays))
 
 
 def _cell(value: Any) -> str:

@@ -83,9 +83,10 @@ Level learning_finish(const Importer *importer, State *state, Run *run, bool bef
         return WARNING;
     }
     run_call(l->learn, state, run, 0.0);
+    outcome_tell(importer, state, run);
     bool cut = state->record[l->intervening].integer;
     Lesson lesson = {run->block + l->base_column * state->nodes,
-                     run->block + l->following_column * state->nodes,
+                     run->block + (l->next_column + NEXT_LEARNED_MPS) * state->nodes,
                      state->record[l->apply_learned].integer,
                      cut ? "drive, last intervention truncated" : "drive",
                      state->record[l->interventions].integer};

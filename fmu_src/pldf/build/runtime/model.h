@@ -45,7 +45,8 @@ typedef struct { /* what only a model that learns has: cells, texts and columns 
     int32_t bound_count;
     int32_t store_text, driver_id, apply_learned, learn_if[2], localization;
     int32_t first_node, nodes, intervening, interventions, profile_iteration, profile_status;
-    int32_t base_column, learned_column, following_column;
+    int32_t set_series, holds, speed_min;
+    int32_t base_column, learned_column, trace_column, next_column;
 } Learning;
 
 typedef struct {
@@ -79,4 +80,5 @@ typedef struct {
 /* Of an iteration; those from COLUMN_LEARNED on, KERNEL_COLUMNS of them, are the kernel's too. */
 extern const ProfileColumn profile_columns[PROFILE_COLUMNS];
 extern const char *const profile_kinds[PROFILE_KINDS];
+extern const char *const bound_words[];
 extern const char *const phase_names[];

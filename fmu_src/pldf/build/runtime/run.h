@@ -28,5 +28,7 @@ void run_release(Run *run);
 /* Of models that learn (learning.c); the others allow everything, follow and keep nothing. */
 bool learning_allows(const Importer *importer, const State *state); /* the parameters */
 void learning_follow(const Importer *importer, State *state, Run *run);
+/* One line per intervention of a drive that was learned from: what became of it (outcome.c). */
+void outcome_tell(const Importer *importer, const State *state, const Run *run);
 /* Of a drive that ends, and that ended `before`; INFO, or what was told of what could not be kept. */
 Level learning_finish(const Importer *importer, State *state, Run *run, bool before);

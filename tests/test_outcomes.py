@@ -1,0 +1,96 @@
+"""What is said of each intervention."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from pldf.function import DrivingFunction
+from pldf.kernel.codes import BOUND_LEGAL_LIMIT
+from pldf.outcomes import TEXTS, held_places, signed, tenths, whole
+from told_drive import driven, write_road
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> DrivingFunction:
+    """Return the function at the end of a drive with a bit of everything."""
+    return driven(write_road(tmp_path_factory.mktemp("road")))
+
+
+def lines(made: DrivingFunction) -> list[str]:
+    return [message.text for message in made.messages if message.level == "info"]
+
+
+def pattern(name: str) -> str:
+    return re.escape(TEXTS[name]).replace("%d", "-?[0-9]+").replace("%s", "[-+a-z0-9. ]+?")
+
+
+@pytest.mark.parametrize("name", sorted(TEXTS.keys() - {"MORE"}))  # which has a test of its own
+def test_the_drive_that_is_compared_has_a_bit_of_everything(
+    made: DrivingFunction, name: str
+) -> None:
+    assert any(re.search(pattern(name), line) for line in lines(made))
+
+
+def test_each_intervention_has_one_line(made: DrivingFunction) -> None:
+    told = lines(made)
+    st = made.record
+    assert st.drive_interventions == 7
+    for k in range(7):
+        assert told[k].startswith(f"pedal intervention {k + 1}, ")
+    assert sum(line.startswith("set speed, ") for line in told) == st.set_series
+    assert len(told) == 7 + st.set_series + 1  # and one about the plan with the set speeds
+
+
+def test_a_bound_is_told_with_its_place_and_speed(made: DrivingFunction) -> None:
+    """50 km/h and 20 km/h of tolerance from the sign at 1200 m to that at 1240 m."""
+    held = "held at 70 km/h from 1200 to 1240 m by legal limit + tolerance"
+    assert [held in line for line in lines(made)].index(True) == 1
+    assert sum(held in line for line in lines(made)) == 1
+    assert made.learned is not None
+    places = held_places(made.learned.bound, made.learned.learned_mps)
+    (legal,) = (hold for hold in places if hold.bound == BOUND_LEGAL_LIMIT)
+    assert legal[1:3] == (1200.0, 1240.0)
+    assert legal.low_mps == legal.high_mps == pytest.approx(70.0 / 3.6)
+
+
+def test_what_is_told_of_a_lesson_is_what_was_learned(made: DrivingFunction) -> None:
+    assert made.learned is not None
+    change = made.learned.learned_mps - np.array(made.profile.learned_mps)
+    for pedal in made.outcomes().pedals:
+        mine = np.flatnonzero(
+            (made.learned.intervention == pedal.number) & (made.learned.drive == 1.0)
+        )
+        assert pedal.learned_m == len(mine)
+        if len(mine) > 0:
+            assert (pedal.learned_from_m, pedal.learned_to_m) == (mine[0], mine[-1])
+            assert pedal.mean_change_mps == pytest.approx(change[mine].mean())
+            assert abs(pedal.largest_change_mps) == np.abs(change[mine]).max()
+            assert pedal.largest_change_mps in change[mine]
+
+
+def test_a_hole_is_told_with_time_and_length(made: DrivingFunction) -> None:
+    (lost,) = (pedal for pedal in made.outcomes().pedals if pedal.hole_m)
+    assert lost.hole_m == pytest.approx(50.0, abs=1.0)  # 2 s at 25 m/s
+    assert lost.hole_s == pytest.approx(2.0, abs=0.04)
+
+
+def test_many_bounds_are_counted_not_listed(made: DrivingFunction) -> None:
+    hold = held_places(np.full(20, 2.0), np.full(20, 19.0))[0]
+    outcomes = made.outcomes()
+    many = outcomes.pedals[1]._replace(holds=(hold,) * 13)
+    assert outcomes.words(many).count("held at 68 km/h") == 10
+    assert outcomes.words(many).endswith("; held at 3 more places")
+
+
+def test_numbers_are_rounded_as_in_c_and_zero_has_no_minus() -> None:
+    assert [whole(x) for x in (-0.6, -0.5, 0.49, 0.5, 1.5, 2.5)] == [-1, 0, 0, 1, 2, 3]
+    assert [tenths(x) for x in (0.0, 0.04, 0.05, 9.96, -3.25)] == [
+        "0.0",
+        "0.0",
+        "0.1",
+        "10.0",
+        "3.3",
+    ]
+    assert [signed(x) for x in (0.0, -0.04, -0.06, 12.34)] == ["+0.0", "+0.0", "-0.1", "+12.3"]
