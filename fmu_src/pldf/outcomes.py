@@ -39,20 +39,21 @@ BOUND_WORDS: Final = {
     BOUND_JERK: "jerk",
 }
 
+NOT_LEARNED: Final = "not learned: "
 # In people's words: %d takes a whole number of m or km/h, %s a name or a number with one decimal.
 TEXTS: Final = {
     "PEDAL": "pedal intervention %d, %d to %d m: ",
     "TRUNCATED": "(not over when the drive ended) ",
-    "NOT_MOVED": "not learned: the car did not move",
+    "NOT_MOVED": NOT_LEARNED + "the car did not move",
     "LEARNED": "learned from %d to %d m, on average %s km/h, at most %s km/h",
-    "HOLE": "not learned: a hole of %s s in the recording costs %d m",
-    "STOP": "not learned: the car was slower than %d km/h, a situation, not a wish",
-    "NOT_ELIGIBLE": "not learned: learning was not allowed there",
+    "HOLE": NOT_LEARNED + "a hole of %s s in the recording costs %d m",
+    "STOP": NOT_LEARNED + "the car was slower than %d km/h, a situation, not a wish",
+    "NOT_ELIGIBLE": NOT_LEARNED + "learning was not allowed there",
     "SET_SPEED": "set speed, %d to %d m: ",
     "SET_LEARNED": "%s km/h learned",
     "SET_CUT": "%s km/h learned of the %s km/h set, held by legal limit + tolerance",
     "SET_NOT_ELIGIBLE": "%s km/h not learned: learning was not allowed there",
-    "SET_TAKEN_BACK": "not learned: taken back at once",
+    "SET_TAKEN_BACK": NOT_LEARNED + "taken back at once",
     "PLAN": "plan with the set speed: ",
     "SEPARATOR": "; ",
     "HELD": "held at %d km/h from %d to %d m by %s",
@@ -94,7 +95,7 @@ class PedalOutcome(NamedTuple):
         learned_m: how many nodes of the profile it shaped last.
         learned_from_m, learned_to_m: the first and the last of them.
         mean_change_mps, largest_change_mps: of these nodes, against the profile driven.
-        hole_s, hole_m: time and length of the holes that cost it.
+        hole_s, hole_m: time and length of the holes that touch it.
         holds: bounds that cut its lesson.
     """
 
@@ -128,6 +129,12 @@ class SetSpeedOutcome(NamedTuple):
     wish_mps: float
     offset_mps: float
     outcome: int
+
+    @property
+    def is_cut(self) -> bool:
+        """Tell whether the tolerance above the legal limit allowed less than was set."""
+        learned = self.outcome == OUTCOME_LEARNED
+        return learned and self.offset_mps < self.wish_mps - SAME_OFFSET_MPS
 
 
 class Outcomes(NamedTuple):
@@ -240,7 +247,7 @@ def set_speed_words(series: SetSpeedOutcome) -> str:
         return TEXTS["SET_TAKEN_BACK"]
     if series.outcome == OUTCOME_NOT_ELIGIBLE:
         return TEXTS["SET_NOT_ELIGIBLE"] % wish
-    if series.offset_mps < series.wish_mps - SAME_OFFSET_MPS:
+    if series.is_cut:
         return TEXTS["SET_CUT"] % (offset, wish)
     return TEXTS["SET_LEARNED"] % offset
 
@@ -257,6 +264,12 @@ def hold_words(hold: Hold) -> str:
     if high == low:
         return TEXTS["HELD"] % (low, *place)
     return TEXTS["HELD_BETWEEN"] % (low, high, *place)
+
+
+def is_outcome(text: str) -> bool:
+    """Tell whether a message of an FMU is one of these lines."""
+    starts = (TEXTS[name].partition("%")[0] for name in ("PEDAL", "SET_SPEED", "PLAN"))
+    return text.startswith(tuple(starts))
 
 
 def held_places(bound: FloatArray, speed_mps: FloatArray) -> list[Hold]:

@@ -1,7 +1,8 @@
-"""``pldf learn``: what it writes where; nobody's history is lost."""
+"""``pldf learn``: what it says and writes where; nobody's history is lost."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from pldf.profiles.store import continue_profile, read_profile, rollback_profile
 from pldf.recordings.recording import write_recording
 from profile_examples import drive_result
 from sample_recording import sample_recording
+from told_drive import driven, told_recording, write_road
 
 Run = Callable[..., tuple[int, str]]
 
@@ -29,6 +31,53 @@ def run(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.
         return status, capsys.readouterr().err
 
     return runner
+
+
+def learned(capsys: pytest.CaptureFixture[str], tmp_path: Path, *more: str) -> str:
+    """Return what learning from the drive with a bit of everything prints."""
+    road = write_road(tmp_path)
+    write_recording(tmp_path / "told.csv", told_recording(road))
+    given = ["--route", str(road), "--recording", str(tmp_path / "told.csv")]
+    assert cli.main(["learn", *given, "--out", str(tmp_path / "told.pldf"), *more]) == 0
+    return capsys.readouterr().out
+
+
+def test_it_says_of_each_intervention_what_the_log_of_an_fmu_says(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    made = driven(write_road(tmp_path))
+    said = [message.text for message in made.messages if message.level == "info"]
+    lines = learned(capsys, tmp_path).splitlines()
+    assert lines[0].startswith("Rates: ")
+    assert [line[0].lower() + line[1:] for line in lines[1:-1]] == said
+    assert lines[-1].startswith("Iteration 1 written to ")
+
+
+def test_json_says_it_in_numbers(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    report = json.loads(learned(capsys, tmp_path, "--json"))
+    assert report.keys() >= {"iteration", "rates", "interventions", "segments", "offsets"}
+    entries = report["interventions"]
+    kinds = ["learned", "learned", "hole", "stop", "not_moved", "not_eligible", "learned"]
+    assert [entry["outcome"] for entry in entries] == kinds
+    for entry in entries:
+        assert ("why_not" in entry) == (entry["outcome"] != "learned")
+        assert entry.get("why_not", "") in entry["told"]
+        assert entry["number"] == entries.index(entry) + 1
+    assert entries[2]["hole_m"] == pytest.approx(50.0, abs=1.0)
+    assert entries[-1]["truncated"] and not entries[0]["truncated"]
+    (legal,) = (held for held in entries[1]["held"] if held["bound"] == "legal_limit")
+    assert (legal["from_m"], legal["to_m"]) == (1200.0, 1240.0)
+    assert legal["low_mps"] == legal["high_mps"] == pytest.approx(70.0 / 3.6)
+    assert entries[1]["learned_from_m"] < 1050.0
+    assert entries[1]["learned_to_m"] > 1300.0
+    assert 0.0 < entries[1]["mean_change_mps"] < entries[1]["largest_change_mps"]
+    assert [series["outcome"] for series in report["set_speeds"]] == [
+        "taken_back", "learned", "not_eligible", "learned",
+    ]  # fmt: skip
+    cut = report["set_speeds"][-1]
+    assert cut["held_by"] == "legal_limit"
+    assert (cut["wish_mps"], cut["offset_mps"]) == pytest.approx((35.0 / 3.6, 20.0 / 3.6))
+    assert report["plan_held"]
 
 
 def test_a_profile_is_continued_in_its_own_file(run: Run) -> None:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 from pldf.function import DrivingFunction
+from pldf.recordings.recording import Recording
 
 STEP_S = 0.1
 ROAD = """s_m,curvature_per_m,speed_limit_mps
@@ -74,13 +76,41 @@ def _tip(s_m: float, at_m: float) -> bool:
 
 def driven(road: Path) -> DrivingFunction:
     """Return the function after the drive, learned from; its messages hold what it said."""
+    return _drive(road, {})
+
+
+def told_recording(road: Path) -> Recording:
+    """Return the recording of that drive, one sample per step."""
+    columns: dict[str, list[float]] = {name: [] for name in ("time_s", *_FIELDS)}
+    _drive(road, columns)
+    return Recording({name: np.array(values) for name, values in columns.items()})
+
+
+# What an observer sees at the beginning of a step: new inputs, and what was in force until then.
+_FIELDS = {
+    "s_m": "vehicle_s_m",
+    "speed_mps": "vehicle_speed_mps",
+    "mode": "mode",
+    "gas_pedal": "driver_gas_pedal",
+    "brake_pedal": "driver_brake_pedal",
+    "set_speed_mps": "set_speed_mps",
+    "set_speed_offset_mps": "set_speed_offset_mps",
+    "eligible": "eligible",
+}
+
+
+def _drive(road: Path, columns: dict[str, list[float]]) -> DrivingFunction:
     made = DrivingFunction()
     made.texts.route_file = str(road)
     made.record.learn = 1
     made.initialize()
-    for _, step_s, inputs in told_drive():
+    for time_s, step_s, inputs in told_drive():
         for name, value in inputs.items():
             setattr(made.record, name, type(getattr(made.record, name))(value))
+        for name, values in columns.items():
+            values.append(
+                time_s if name == "time_s" else float(getattr(made.record, _FIELDS[name]))
+            )
         made.step(step_s)
     made.finish()
     return made

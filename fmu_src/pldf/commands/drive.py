@@ -16,6 +16,7 @@ from ..durations import minutes
 from ..errors import ModelError
 from ..kernel.codes import LEARN
 from ..kernel.units import KMH_PER_MPS
+from ..outcomes import is_outcome
 from ..profiles.store import STORE_VARIABLE, ProfileStore
 from ..recordings.recording import write_recording
 from ..roads import fingerprint
@@ -101,6 +102,7 @@ def run(options: argparse.Namespace) -> None:
     _print_rates(done)
     require_no_errors(done.messages)
     if phase.learn:
+        _print_outcomes(done)
         _print_learned(setting)
     if not done.arrived:
         raise ModelError(f"the drive was given up: the vehicle {done.ending}")
@@ -158,6 +160,13 @@ def _print_rates(done: Drive) -> None:
         f"combined {rates['rate.combined']:.1%}"
     )
     print(f"pedal      {rates['drive.interventions']:.0f} interventions")
+
+
+def _print_outcomes(done: Drive) -> None:
+    """Print what the function said of each intervention."""
+    told = [message.text for message in done.messages if is_outcome(message.text)]
+    for line in dict.fromkeys(told):
+        print(f"  {line}")
 
 
 def _print_learned(setting: DriveSetting) -> None:

@@ -8,7 +8,6 @@ import sys
 from typing import Any, Final
 
 from ..function import DrivingFunction
-from ..kernel.units import KMH_PER_MPS
 from ..profiles.store import (
     StoredProfile,
     continue_profile,
@@ -53,7 +52,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="replace what --out holds, whatever it is; it is kept as OUT.replaced-N",
     )
-    parser.add_argument("--json", action="store_true", help="print what was learned where and why")
+    parser.add_argument(
+        "--json",
+        action="store_true",
+        help="print for every intervention what became of it: learned where and how much, held by "
+        "which bound, or why not",
+    )
     add_settings(parser)
 
 
@@ -96,15 +100,6 @@ def _print_summary(learned: Learned, report: dict[str, Any], out: str) -> None:
         f"Rates: pedal {rates['pedal']:.1%}, set speed {rates['set_speed']:.1%}, "
         f"combined {rates['combined']:.1%}"
     )
-    for entry in report["interventions"]:
-        outcome = entry.get("why_not") or f"{entry['learned_m']} m learned"
-        print(
-            f"Intervention {entry['number']}: {entry['start_m']:.0f} to {entry['end_m']:.0f} m, "
-            f"{outcome}"
-        )
-    for entry in report["offsets"]:
-        print(
-            f"Set speed {KMH_PER_MPS * entry['offset_mps']:+.1f} km/h from {entry['start_m']} m to "
-            f"{entry['end_m']} m"
-        )
+    for line in learned.function.outcomes().lines():
+        print(line[0].upper() + line[1:])
     print(f"Iteration {learned.iteration.number} written to {out}")

@@ -13,10 +13,24 @@ from ..findings import Finding
 from ..function import DrivingFunction
 from ..instance import view
 from ..kernel.arrays import FloatArray
-from ..kernel.interpolation import cell_at
+from ..kernel.codes import (
+    BOUND,
+    BOUND_LEGAL_LIMIT,
+    OUTCOME,
+    OUTCOME_HOLE,
+    OUTCOME_LEARNED,
+)
 from ..kernel.replay import Samples, replay
 from ..kernel.stretch import stretch_factor, stretched_position
-from ..kernel.units import KMH_PER_MPS
+from ..outcomes import (
+    NOT_LEARNED,
+    TEXTS,
+    Hold,
+    Outcomes,
+    PedalOutcome,
+    SetSpeedOutcome,
+    set_speed_words,
+)
 from ..profiles.store import Iteration, StoredProfile
 from ..roads import Route, fingerprint
 from .derived import completed
@@ -113,8 +127,13 @@ def _taken_for_base(
 
 
 def explain(learned: Learned) -> dict[str, Any]:
-    """Return what was learned where and why, ready for JSON."""
+    """Return what was learned where and why, ready for JSON; speeds in m/s.
+
+    ``interventions`` are those by pedal, ``set_speeds`` the series of presses of the lever. Each
+    has its ``outcome`` and the same ``told`` in words. ``held`` says where which bound cut it.
+    """
     st = learned.function.record
+    outcomes = learned.function.outcomes()
     return {
         "iteration": learned.iteration.number,
         "rates": {
@@ -122,47 +141,54 @@ def explain(learned: Learned) -> dict[str, Any]:
             "set_speed": st.set_speed_ns / st.total_ns,
             "combined": st.combined_ns / st.total_ns,
         },
-        "interventions": [_explain_intervention(learned, k) for k in range(st.drive_interventions)],
+        "interventions": [_explain_pedal(learned, outcomes, pedal) for pedal in outcomes.pedals],
+        "set_speeds": [_explain_set_speed(series) for series in outcomes.set_speeds],
         "segments": _segments(learned),
         "offsets": _offsets(learned),
+        "plan_held": [_explain_hold(hold) for hold in outcomes.plan_holds],
     }
 
 
-def _explain_intervention(learned: Learned, k: int) -> dict[str, Any]:
+def _explain_pedal(learned: Learned, outcomes: Outcomes, pedal: PedalOutcome) -> dict[str, Any]:
     f = learned.function
-    start, end = f.trace.start_m[k], f.trace.end_m[k]
-    last = k == f.record.drive_interventions - 1
     entry: dict[str, Any] = {
-        "number": k + 1,
-        "start_m": start,
-        "end_m": end,
-        "truncated": bool(f.record.intervening and last),
+        "number": pedal.number,
+        "start_m": pedal.start_m,
+        "end_m": pedal.end_m,
+        "truncated": pedal.truncated,
+        "outcome": OUTCOME.items[pedal.outcome].lower(),
+        "told": outcomes.words(pedal),
+        "learned_m": pedal.learned_m,
     }
-    if end <= start:
-        return {**entry, "learned_m": 0, "why_not": "the car did not move"}
-    alpha = stretch_factor(f.record, f.route, f.trace, k)
-    stretched = stretched_position(start, end, alpha)
-    mine = (learned.iteration.intervention == k + 1) & (
-        learned.iteration.drive == learned.iteration.number
-    )
-    entry.update(stretch_factor=alpha, stretched_start_m=stretched, learned_m=int(mine.sum()))
-    if not mine.any():
-        entry["why_not"] = _why_not(learned, stretched, end)
+    if pedal.end_m > pedal.start_m:
+        alpha = stretch_factor(f.record, f.route, f.trace, pedal.number - 1)
+        entry["stretch_factor"] = alpha
+        entry["stretched_start_m"] = stretched_position(pedal.start_m, pedal.end_m, alpha)
+    if pedal.outcome == OUTCOME_LEARNED:
+        for name in ("learned_from_m", "learned_to_m", "mean_change_mps", "largest_change_mps"):
+            entry[name] = getattr(pedal, name)
+        entry["held"] = [_explain_hold(hold) for hold in pedal.holds]
+    else:
+        entry["why_not"] = entry["told"].removeprefix(TEXTS["TRUNCATED"]).removeprefix(NOT_LEARNED)
+    if pedal.outcome == OUTCOME_HOLE:
+        entry.update(hole_s=pedal.hole_s, hole_m=pedal.hole_m)
     return entry
 
 
-def _why_not(learned: Learned, start_m: float, end_m: float) -> str:
-    trace, st = learned.function.trace, learned.function.record
-    nodes = len(trace.eligible)
-    reach = slice(cell_at(nodes, start_m), cell_at(nodes, end_m) + 1)
-    if np.asarray(trace.gap)[reach].any():
-        return f"hole of more than {st.learning_recording_gap_s:g} s in the recording"
-    if not np.asarray(trace.eligible)[reach].all():
-        return f"below {KMH_PER_MPS * st.learning_speed_min_mps:g} km/h or not eligible"
-    return (
-        f"within {KMH_PER_MPS * st.learning_deviation_min_mps:.3g} km/h of the profile, or part "
-        "of the segment of another intervention"
-    )
+def _explain_set_speed(series: SetSpeedOutcome) -> dict[str, Any]:
+    return {
+        "from_m": series.from_m,
+        "to_m": series.to_m,
+        "wish_mps": series.wish_mps,
+        "offset_mps": series.offset_mps,
+        "outcome": OUTCOME.items[series.outcome].lower(),
+        "told": set_speed_words(series),
+        "held_by": BOUND.items[BOUND_LEGAL_LIMIT].lower() if series.is_cut else None,
+    }
+
+
+def _explain_hold(hold: Hold) -> dict[str, Any]:
+    return {**hold._asdict(), "bound": BOUND.items[hold.bound].lower()}
 
 
 def _segments(learned: Learned) -> list[dict[str, Any]]:
