@@ -180,7 +180,7 @@ FLOORS = (
     ("os", "disk", "model", "text"),
     ("importer", "profile", "profile_history", "prepared"),
     ("store",),
-    ("run", "learning"),
+    ("run", "learning", "outcome"),
     ("session", "values", "state"),
     ("calls", "fmi2", "fmi3"),
 )

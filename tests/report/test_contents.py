@@ -9,6 +9,7 @@ from pldf.analysis.analysis import analyse
 from pldf.analysis.study_folder import StudyFolder
 from pldf.cli import main
 from pldf.errors import ModelError
+from pldf.recordings.interventions import pedal_interventions
 from pldf.report.contents import Contents, collect
 
 
@@ -24,6 +25,17 @@ def test_the_steps_of_the_intervention_fit_together(contents: Contents) -> None:
     assert steps.driven_mps[at] == pytest.approx(steps.joined_mps[0], abs=0.2)
     inside = (steps.node_m > start) & (steps.node_m < end)
     assert abs(steps.mean_mps - steps.followed_mps)[inside].max() > 0.5
+
+
+def test_what_became_of_each_intervention_is_there(contents: Contents, html: str) -> None:
+    assert contents.driver is not None
+    recording = contents.driver.recordings[contents.driver.explained]
+    count = len(pedal_interventions(recording))
+    told = contents.driver.outcomes
+    assert sum(line.startswith("pedal intervention ") for line in told) == count
+    assert count > 0
+    for line in told:
+        assert f"<li>{line.replace('-', '&minus;')}</li>" in html
 
 
 def test_only_who_was_recorded_can_be_shown(folder: Path) -> None:

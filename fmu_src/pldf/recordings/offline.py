@@ -22,6 +22,7 @@ from ..kernel.codes import (
 )
 from ..kernel.replay import Samples, replay
 from ..kernel.stretch import stretch_factor, stretched_position
+from ..kernel.units import KMH_PER_MPS
 from ..outcomes import (
     NOT_LEARNED,
     TEXTS,

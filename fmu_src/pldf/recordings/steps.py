@@ -7,13 +7,10 @@ from typing import Final, Literal
 
 import numpy as np
 
-from ..function import DrivingFunction
 from ..kernel.arrays import FloatArray
 from ..kernel.interpolation import value_at
 from ..kernel.stretch import joined_speed, stretch_factor, stretched_position
-from ..roads import Route
-from .offline import Learned, learn_from
-from .recording import Recording
+from .offline import Learned
 
 AROUND_M: Final = 60.0  # shown before and behind
 _INTERESTING_MPS: Final = 1.5  # a smaller change is hard to see in a figure
@@ -51,18 +48,16 @@ class Steps:
     learned_mps: FloatArray
 
 
-def explain_steps(recording: Recording, route: Route, function: DrivingFunction) -> Steps | None:
+def explain_steps(learned: Learned) -> Steps | None:
     """Return the steps of the most telling intervention of a drive with the base function.
 
     Args:
-        recording: of that drive.
-        route: the route driven.
-        function: with the parameters of the run; is driven anew and left changed.
+        learned: from that drive; its function is left with other parameters.
 
     Returns:
         None if nothing was learned from any intervention.
     """
-    learned = learn_from(recording, route, function=function)
+    function = learned.function
     k = _most_telling(learned)
     if k is None:
         return None

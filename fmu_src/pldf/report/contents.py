@@ -19,6 +19,7 @@ from ..function import DrivingFunction
 from ..kernel.parameters import PlannerParameters
 from ..kernel.signals import signals_of
 from ..profiles.stored_profile import Iteration, StoredProfile
+from ..recordings.offline import learn_from
 from ..recordings.recording import Recording
 from ..recordings.steps import Steps, explain_steps
 from ..roads import Route, fingerprint, open_route, route_arrays
@@ -41,6 +42,7 @@ class DriverShown:
         recordings: complete, by phase, in order of the study.
         profile: base and the profile after each learned drive (the note of its iteration), as far
             as it was driven.
+        outcomes: what became of each intervention of ``explained``, a line each.
         steps: one intervention explained; None if nothing was learned from ``explained``.
         explained: the first drive learned from.
         acting: the drives recorded in which the driver intervenes.
@@ -49,6 +51,7 @@ class DriverShown:
     participant: str
     recordings: Mapping[str, Recording]
     profile: StoredProfile
+    outcomes: tuple[str, ...]
     steps: Steps | None
     explained: str
     acting: tuple[str, ...]
@@ -197,11 +200,13 @@ def _driver(
     for taught, seen in known.development().items():
         if seen in recordings:
             profile = profile.with_iteration(_followed(recordings[seen], profile, taught))
+    learned = learn_from(recordings[first], route, function=function)
     return DriverShown(
         participant=participant,
         recordings=recordings,
         profile=profile,
-        steps=explain_steps(recordings[first], route, function),
+        outcomes=tuple(learned.function.outcomes().lines()),
+        steps=explain_steps(learned),
         explained=first,
         acting=tuple(p for names in study.compared().values() for p in names if p in recordings),
     )

@@ -175,6 +175,9 @@ def _sections(contents: Contents) -> list[Section]:
         sections.append(Section(name, title, Markup(html_of(scene, name)), caption))
     if contents.driver is None:
         sections.append(Section("driver", "One driver"))
+    else:
+        title = f"What became of each intervention of {contents.driver.participant}"
+        sections.append(Section("outcomes", title))
     return [*sections, Section("reproduce", "Reproduce")]
 
 
