@@ -179,7 +179,11 @@ def run_study(
 
 
 def analyse(
-    folder: PathLike, *, route: Route | None = None, without: Collection[str] = ()
+    folder: PathLike,
+    *,
+    route: Route | None = None,
+    without: Collection[str] = (),
+    profiles: PathLike | None = None,
 ) -> Analysis:
     """Analyse a study, real or simulated, as ``pldf analyse`` does.
 
@@ -187,7 +191,10 @@ def analyse(
         folder: with ``drives.csv`` or ``recordings/PARTICIPANT_PHASE.csv``, and
             ``questionnaire.csv`` if there is one.
         route: the route driven; needed if the recordings lack columns.
-        without: participants to leave out.
+        without: participants (``P07``), drives (``P07_B2``) or names of recordings to leave out,
+            beside ``exclusions.csv``.
+        profiles: folder of the learned profiles, for recordings of system B without
+            ``set_speed_offset_mps``; None: ``profiles`` in the folder, if there.
 
     Returns:
         Rates, scores, tests and effect sizes.
@@ -197,4 +204,7 @@ def analyse(
     """
     from .analysis import analysis, study_folder
 
-    return analysis.analyse(study_folder.StudyFolder(Path(folder), route, frozenset(without)))
+    learned = None if profiles is None else Path(profiles)
+    return analysis.analyse(
+        study_folder.StudyFolder(Path(folder), route, frozenset(without), profiles=learned)
+    )

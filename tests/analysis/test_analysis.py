@@ -110,10 +110,19 @@ def test_recordings_of_a_laboratory_give_the_rates_of_section_4(tmp_path: Path) 
     assert rates == pytest.approx([0.075, 0.175, 0.195], abs=1e-9)
 
     few = {name: columns[name] for name in ("time_s", "s_m", "speed_mps", "mode")}
-    write_recording(tmp_path / "recordings" / "ben_B1.csv", Recording(few))
-    assert "ben_B1.csv: no column brake_pedal, set_speed_offset_mps" in refusal(
+    write_recording(tmp_path / "recordings" / "ben_A1.csv", Recording(few))
+    assert "ben_A1.csv: no column brake_pedal, set_speed_offset_mps" in refusal(
         StudyFolder(tmp_path)
     )
+    known = StudyFolder(tmp_path, packed_route(0))
+    assert "ben_A1.csv: neither set_speed_mps nor set_speed_offset_mps was" in refusal(known)
+    for path in (tmp_path / "recordings").glob("*_A?.csv"):
+        write_recording(path, Recording(few))
+    # Nobody could set the speed with A: that B knows better is no reason to compare.
+    assert "rates cannot be compared" in refusal(StudyFolder(tmp_path, packed_route(0)))
+    with_zeros = Recording(few | {"set_speed_offset_mps": 0.0 * time})
+    for path in (tmp_path / "recordings").glob("*_A?.csv"):
+        write_recording(path, with_zeros)
     assert len(analyse(StudyFolder(tmp_path, packed_route(0))).drives) == 8
 
     (tmp_path / "recordings" / "ben_B2.csv").unlink()
@@ -121,7 +130,7 @@ def test_recordings_of_a_laboratory_give_the_rates_of_section_4(tmp_path: Path) 
     assert "participant ben has no drive B2" in told
     assert "--without ben" in told
     (tmp_path / "recordings" / "ben-B2.csv").write_text("")
-    assert "PARTICIPANT_PHASE.csv" in refusal(StudyFolder(tmp_path))
+    assert "PARTICIPANT_PHASE" in refusal(StudyFolder(tmp_path))
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ SCORES = (2, 1, 0, -1, -2, 1, 0, -1, 2)  # favourable +2; on the right in 3, 6 a
 def read(folder: Path, text: str, survey: dict[str, object] | None = None) -> Questionnaire:
     path = folder / "questionnaire.csv"
     path.write_text(text, encoding="utf-8")
-    return read_questionnaire(path, (), survey_map(survey or {}, "map.toml"))
+    return read_questionnaire(path, names=survey_map(survey or {}, "map.toml"))
 
 
 def refusal(folder: Path, text: str, survey: dict[str, object] | None = None) -> str:

@@ -45,7 +45,7 @@ def scored(item: str, box: float) -> float:
 def read(tool: str) -> Questionnaire:
     path = SURVEYS / f"{tool}.toml"
     names = survey_map(read_map(path).questionnaire, str(path))
-    return read_questionnaire(SURVEYS / names.file, (), names)
+    return read_questionnaire(SURVEYS / names.file, names=names)
 
 
 @pytest.mark.parametrize("tool", TOOLS)

@@ -6,7 +6,7 @@ and B2), as in the paper. Drives without interventions (A3, B3) are reported but
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -18,7 +18,10 @@ from ..findings import Finding
 from ..kernel.arrays import FloatArray
 from ..recordings.interventions import Rates
 from ..study.drive_row import DriveRow
-from .drives_table import check_complete, read_drives, row_of_recording
+from .drives_table import missing, repeated
+from .exclusions import Exclusion
+from .gathered import Gathered, Reading, gather
+from .problems import StudyError, findings_of
 from .questionnaires import Questionnaire, read_questionnaire
 from .rounding import as_written
 from .statistics import Comparison, MeanInterval, compare, mean_interval
@@ -26,9 +29,6 @@ from .study_folder import SYSTEMS, StudyFolder
 
 RATES: Final = Rates._fields
 PARTICIPANTS_MIN: Final = 2
-
-# Called with the number of recordings read and of all.
-Reading = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +43,7 @@ class Analysis:
         questionnaire: None if there is none.
         source: file or folder that the rates come from.
         notes: what one has to know to trust the numbers.
+        exclusions: what was left out, and why.
     """
 
     drives: Sequence[DriveRow]
@@ -52,6 +53,7 @@ class Analysis:
     questionnaire: Questionnaire | None
     source: Path
     notes: tuple[Finding, ...] = ()
+    exclusions: tuple[Exclusion, ...] = ()
 
     @property
     def needed(self) -> tuple[str, ...]:
@@ -102,24 +104,77 @@ def analyse(study: StudyFolder, reading: Reading = lambda _done, _all: None) -> 
     """Analyse the study in ``study.folder``.
 
     Raises:
-        ModelError: naming file, line, participant and phase of what is missing or unusable.
+        StudyError: naming file, line, participant and phase of all that is missing or unusable.
+        ModelError: there is nothing to analyse.
     """
-    drives, origin = _drives(study, reading)
     compared = study.compared()
-    check_complete(drives, [name for names in compared.values() for name in names], str(origin))
-    participants = tuple(dict.fromkeys(drive.participant for drive in drives))
+    found = gather(study, reading)
+    problems = list(_wrong_drives(study, found, compared))
+    left, told = _who_leaves(study, found, compared)
+    participants = tuple(dict.fromkeys(who for who, _ in found.driven if who not in left))
+    try:
+        answers = _questionnaire(study, participants, left, bool(problems))
+    except ModelError as error:
+        problems += findings_of(error, str(study.questionnaire))
+    if problems:
+        raise StudyError(problems)
+    if not all(compared.values()):
+        raise ModelError(f"{study.folder}: no drives with both systems, so nothing to compare")
     if len(participants) < PARTICIPANTS_MIN:
         raise ModelError(
-            f"{origin}: {len(participants)} participants; comparing systems needs at least "
+            f"{found.source}: {len(participants)} participants; comparing systems needs at least "
             f"{PARTICIPANTS_MIN}"
         )
     order = {name: at for at, name in enumerate(participants)}
+    drives = [drive for drive in found.drives if drive.participant in order]
     drives.sort(key=lambda drive: order[drive.participant])
-    answers = _questionnaire(study, participants)
-    untested = Analysis(tuple(drives), participants, compared, {}, answers, origin)
+    untested = Analysis(tuple(drives), participants, compared, {}, answers, found.source)
+    notes = (*found.notes, *study.names.notes(), *told)
+    return _tested(study, replace(untested, notes=notes, exclusions=study.exclusions.listed))
+
+
+def _wrong_drives(
+    study: StudyFolder, found: Gathered, compared: Mapping[str, Sequence[str]]
+) -> Iterator[Finding]:
+    """Yield all that is wrong with the drives."""
+    yield from found.problems
+    yield from repeated(found.drives)
+    if found.driven:
+        needed = [name for names in compared.values() for name in names]
+        yield from missing(found.driven, needed, str(found.source), study.exclusions)
+
+
+def _who_leaves(
+    study: StudyFolder, found: Gathered, compared: Mapping[str, Sequence[str]]
+) -> tuple[set[str], list[Finding]]:
+    """Return who has no drive left with one of the systems, and what exclusions did to whom.
+
+    The rule: who has drives left with both systems counts with the mean over those that are left;
+    who has none left with one of them leaves the study.
+    """
+    driven = set(found.driven)
+    left: set[str] = set()
+    told = []
+    for who in dict.fromkeys(participant for participant, _ in found.driven):
+        place = f"participant {who}"
+        for system, phases in compared.items():
+            there = [phase for phase in phases if (who, phase) in driven]
+            if phases and not there:
+                left.add(who)
+                text = f"no drive with system {system} is left ({', '.join(phases)} left out)"
+                so = "the participant is in no mean, test or figure of the study"
+                told.append(Finding("warning", str(found.source), 0, place, text, so))
+            elif len(there) < len(phases):
+                out = [phase for phase in phases if phase not in there]
+                text = f"{', '.join(out)} left out, so {system} is the mean of {', '.join(there)}"
+                told.append(Finding("note", str(found.source), 0, place, text))
+    return left, told
+
+
+def _tested(study: StudyFolder, untested: Analysis) -> Analysis:
+    """Return the analysis with the systems compared."""
+    answers = untested.questionnaire
     measures = (*RATES, *(answers.scores if answers else ()))
-    if not all(compared.values()):
-        raise ModelError(f"{study.folder}: no drives with both systems, so nothing to compare")
     values = {m: [untested.per_participant(m, system) for system in SYSTEMS] for m in measures}
     whole = {measure: np.isfinite(ab).all(axis=0) for measure, ab in values.items()}
     comparisons = {
@@ -127,8 +182,8 @@ def analyse(study: StudyFolder, reading: Reading = lambda _done, _all: None) -> 
         for measure, both in whole.items()
         if both.sum() >= PARTICIPANTS_MIN
     }
-    left_out = _left_out(study, participants, values) if answers else ()
-    notes = (*(answers.notes if answers else ()), *left_out)
+    left_out = _left_out(study, untested.participants, values) if answers else ()
+    notes = (*untested.notes, *(answers.notes if answers else ()), *left_out)
     return replace(untested, comparisons=comparisons, notes=notes)
 
 
@@ -159,31 +214,30 @@ def _left_out(
             )  # fmt: skip
 
 
-def _drives(study: StudyFolder, reading: Reading) -> tuple[list[DriveRow], Path]:
-    """Return all drives, from the table of drives if there is one, else from the recordings."""
-    table = study.folder / "drives.csv"
-    if table.exists():
-        return read_drives(table, study.without), table
-    recordings = study.recordings()
-    if not recordings:
-        raise ModelError(
-            f"{study.folder}: no drives.csv and no recordings/PARTICIPANT_PHASE.csv to analyse; "
-            "name a folder that 'pldf study' wrote, or put recordings there"
-        )
-    drives = []
-    for number, ((participant, phase), path) in enumerate(recordings.items(), start=1):
-        drives.append(row_of_recording(participant, phase, study.read(path), str(path)))
-        reading(number, len(recordings))
-    return drives, study.folder / "recordings"
+def _questionnaire(
+    study: StudyFolder, participants: Collection[str], left: Collection[str], in_doubt: bool
+) -> Questionnaire | None:
+    """Return the answers of the participants.
 
-
-def _questionnaire(study: StudyFolder, participants: Collection[str]) -> Questionnaire | None:
+    Args:
+        study: where they lie.
+        participants: who counts.
+        left: participants who leave the study.
+        in_doubt: not all participants are known, so that nobody is a stranger.
+    """
     path = study.questionnaire
     if not path.exists():
         return None
-    answers = read_questionnaire(path, study.without, study.survey)
+
+    def left_out(participant: str, phase: str) -> bool:
+        return participant in left or study.exclusions.has(participant, phase)
+
+    def known_as(name: str) -> str:
+        return study.names.take(name, str(path)) if name in study.names else name
+
+    answers = read_questionnaire(path, left_out, study.survey, known_as)
     answered = {name for values in answers.items.values() for name, _ in values}
-    if strangers := answered.difference(participants):
+    if not in_doubt and (strangers := answered.difference(participants)):
         raise ModelError(
             f"{path}: answers of {', '.join(sorted(strangers))}, of whom there are no drives; "
             "leave them out with --without"

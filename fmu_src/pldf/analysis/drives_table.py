@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterator, Sequence
 from math import isnan, nan
 from pathlib import Path
 from typing import Final
 
-from ..errors import ModelError
-from ..files.tables import Fault, Table, read_table
+from ..files.tables import Fault, LeftOut, Table, read_table
+from ..findings import Finding
 from ..recordings.interventions import Rates, pedal_interventions, rates_of
 from ..recordings.recording import Recording
-from ..study.drive_row import DRIVES, PHASE, DriveRow
+from ..study.drive_row import DRIVES, DriveRow
+from .exclusions import EXCLUSIONS, Exclusions
 
 _ROUNDED: Final = 0.015  # what three shares written with two decimals can be off
 
@@ -32,13 +32,17 @@ def row_of_recording(participant: str, phase: str, recording: Recording, where: 
     )
 
 
-def read_drives(path: Path, without: Collection[str] = ()) -> list[DriveRow]:
-    """Read the drives in the CSV file ``path``, in order, but those of some participants.
+def read_drives(path: Path, left_out: LeftOut | None = None) -> list[DriveRow]:
+    """Read the drives in the CSV file ``path``, in order.
+
+    Args:
+        path: the file.
+        left_out: says of the cells of a row, by column, whether it is passed over.
 
     Raises:
         ModelError: naming file, line, participant, phase, column and value of what is wrong.
     """
-    table = read_table(path, DRIVES, {"participant": without})
+    table = read_table(path, DRIVES, left_out)
     table.refuse((*_other_systems(table), *_impossible_shares(table)))
     return [_drive(table, row) for row in range(len(table))]
 
@@ -77,35 +81,38 @@ def _impossible_shares(table: Table) -> Iterator[Fault]:
             )
 
 
-def check_phase(where: str, phase: str) -> None:
-    """Raise ModelError unless ``phase`` is A or B and the number of the drive."""
-    if not re.fullmatch(PHASE.pattern, phase):
-        raise ModelError(f"{where}: phase {phase!r} is not {PHASE.description}")
-
-
-def check_complete(drives: Sequence[DriveRow], needed: Collection[str], source: str) -> None:
-    """Raise ModelError if a participant lacks a drive or has one twice.
+def repeated(drives: Sequence[DriveRow]) -> Iterator[Finding]:
+    """Yield the drives that are there twice.
 
     A phase may have been driven several times: then the positions tell the drives apart.
-
-    Args:
-        drives: all drives.
-        needed: phases that every participant must have driven.
-        source: file or folder that they come from.
     """
     seen: dict[tuple[str, str, int], DriveRow] = {}
     for drive in drives:
         before = seen.setdefault((drive.participant, drive.phase, drive.position), drive)
         if before is not drive:
-            raise ModelError(
-                f"{drive.where}: participant {drive.participant} has phase {drive.phase} already "
-                f"({before.where}); a phase driven twice needs positions that differ"
-            )
-    driven = {(participant, phase) for participant, phase, _ in seen}
-    for participant in dict.fromkeys(drive.participant for drive in drives):
-        missing = [phase for phase in needed if (participant, phase) not in driven]
-        if missing:
-            raise ModelError(
-                f"{source}: participant {participant} has no drive {', '.join(missing)}; add it "
-                f"or leave the participant out with --without {participant}"
-            )
+            yield Finding(
+                "error", drive.where, 0, "",
+                f"participant {drive.participant} has phase {drive.phase} already "
+                f"({before.where}); a phase driven twice needs positions that differ",
+            )  # fmt: skip
+
+
+def missing(
+    driven: Sequence[tuple[str, str]], needed: Collection[str], source: str, exclusions: Exclusions
+) -> Iterator[Finding]:
+    """Yield the participants who lack a drive that is not left out.
+
+    Args:
+        driven: participant and phase of all drives.
+        needed: phases that every participant must have driven.
+        source: file or folder that they come from.
+        exclusions: what is left out.
+    """
+    for who in dict.fromkeys(participant for participant, _ in driven):
+        absent = [phase for phase in needed if (who, phase) not in driven]
+        if lacking := [phase for phase in absent if not exclusions.has(who, phase)]:
+            yield Finding(
+                "error", source, 0, "", f"participant {who} has no drive {', '.join(lacking)}", "",
+                f"add it, say in {EXCLUSIONS} why it is missing, or leave the participant out with "
+                f"--without {who}",
+            )  # fmt: skip

@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
 
 from ..errors import ModelError
+from ..findings import Finding
 from ..function import DrivingFunction
 from ..recordings.derived import completed
 from ..recordings.inputs import SUFFIXES
 from ..recordings.mapping import RecordingMap, remembered_map
 from ..recordings.recording import Recording, read_recording
 from ..roads import Route
+from ..study.drive_row import PHASE
 from ..study.phases import PHASES, Phase
-from .drives_table import check_phase
+from .exclusions import EXCLUSIONS, Exclusions, read_exclusions
+from .followed import Profiles
+from .names import Names
+from .problems import StudyError
 from .questionnaires import SurveyMap, survey_map
 
 SYSTEMS: Final = ("A", "B")
 
-# What a recording must hold for the rates, and what is derived when the route is known.
-_PEDALS_AND_LEVER: Final = ("brake_pedal", "set_speed_offset_mps")
+# What says of a drive what the function had learned before.
+_LEARNED: Final = ("set_speed_offset_mps", "profile_mps")
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +39,10 @@ class StudyFolder:
     Attributes:
         folder: with ``drives.csv`` or ``recordings/``, and ``questionnaire.csv`` if there is one.
         route: the route driven, for recordings that lack columns.
-        without: participants to leave out.
+        without: what to leave out beside ``exclusions.csv``: participants, drives such as
+            ``P07_B2``, or recordings by the name of their file, whatever it is.
+        profiles: folder of the learned profiles, for recordings of B that do not tell what was
+            learned before; None: ``profiles`` in the folder, if there.
         map: what columns and answers are called; None: ``map.toml`` in the folder, if there.
     """
 
@@ -41,6 +50,13 @@ class StudyFolder:
     route: Route | None = None
     without: frozenset[str] = frozenset()
     map: RecordingMap | None = None
+    profiles: Path | None = None
+    names: Names = field(default_factory=Names)
+
+    @cached_property
+    def exclusions(self) -> Exclusions:
+        """What is left out, and why."""
+        return read_exclusions(self.folder / EXCLUSIONS, self.without)
 
     @cached_property
     def survey(self) -> SurveyMap:
@@ -92,41 +108,75 @@ class StudyFolder:
         return followed_in
 
     def recordings(self) -> dict[tuple[str, str], Path]:
-        """Return the recordings by (participant, phase); ModelError for a name that tells neither.
+        """Return the recordings by (participant, phase), without what is left out.
 
-        Participants are in order of their names, drives in the order of the study.
-        """
-        paths: dict[tuple[str, str], Path] = {}
-        for path in sorted((self.folder / "recordings").glob("*.*")):
-            if path.suffix.lower() not in SUFFIXES:
-                continue
-            participant, _, phase = path.stem.rpartition("_")
-            if not participant:
-                raise ModelError(
-                    f"{path}: name recordings PARTICIPANT_PHASE.csv, such as P001_A1.csv"
-                )
-            check_phase(str(path), phase)
-            if participant not in self.without:
-                if other := paths.get((participant, phase)):
-                    raise ModelError(f"{path}: the same drive as {other}; leave one of them there")
-                paths[participant, phase] = path
-        return paths
-
-    def read(self, path: Path) -> Recording:
-        """Read a recording with all columns, or with pedals and lever at least.
+        Participants are in order of their names, drives in that of the systems and numbers.
 
         Raises:
-            ModelError: columns are missing and the route is not known.
+            StudyError: files have names that tell neither, or two are of one drive.
+        """
+        paths, problems = self.listed
+        if problems:
+            raise StudyError(problems)
+        return paths
+
+    @cached_property
+    def listed(self) -> tuple[dict[tuple[str, str], Path], list[Finding]]:
+        """The recordings by (participant, phase), and what is wrong with names of files."""
+        found: dict[tuple[str, str], Path] = {}
+        problems: list[Finding] = []
+        for path in self.files():
+            participant, _, phase = path.stem.rpartition("_")
+            if self.exclusions.has_file(path.stem):
+                continue
+            if not participant or not re.fullmatch(PHASE.pattern, phase):
+                text = "not named PARTICIPANT_PHASE, the phase being A or B and a number"
+                way_out = f"name it such as P001_A1.csv, or --without {path.stem}"
+                problems.append(Finding("error", str(path), 0, "", text, "", way_out))
+                continue
+            drive = self.names.take(participant, str(path)), phase
+            other = found.setdefault(drive, path)
+            if other is not path:
+                text = f"the same drive as {other}: {' '.join(drive)}"
+                problems.append(Finding("error", str(path), 0, "", text, "", "keep one of them"))
+        people = list(dict.fromkeys(who for who, _ in found))
+        order = sorted(found, key=lambda at: (people.index(at[0]), at[1][0], int(at[1][1:])))
+        return {drive: found[drive] for drive in order}, problems
+
+    def files(self) -> list[Path]:
+        """Return all files of recordings in order of their names, those left out included."""
+        every = sorted((self.folder / "recordings").glob("*.*"))
+        return [path for path in every if path.suffix.lower() in SUFFIXES]
+
+    def read(self, path: Path) -> Recording:
+        """Read one of the recordings, with all columns that can be known.
+
+        Without a route these are the columns that were recorded.
+
+        Raises:
+            ModelError: the file, or the profile that the drive followed, cannot be used.
         """
         recording = read_recording(path, self.map)
-        missing = [name for name in _PEDALS_AND_LEVER if name not in recording]
         if self.route is None:
-            if missing:
-                raise ModelError(
-                    f"{path}: no column {', '.join(missing)}; name the route driven with --route "
-                    "to have it derived"
-                )
             return recording
+        participant, phase = next(drive for drive, one in self.listed[0].items() if one == path)
         function = DrivingFunction()
         function.prepare(self.route)
-        return completed(recording, function, str(path))
+        if phase[0] == "A" or all(name in recording for name in _LEARNED):
+            return completed(recording, function, str(path))
+        profiles = self._profiles
+        if profiles is None:
+            return completed(recording, function, str(path), profile_known=False)
+        stored = profiles.followed(participant, phase)
+        function.follow(stored)
+        whole = completed(recording, function, str(path))
+        text = f"followed iteration {len(stored.iterations)} of its profile in {profiles.folder}"
+        return replace(whole, notes=(*whole.notes, Finding("note", str(path), 0, "", text)))
+
+    @cached_property
+    def _profiles(self) -> Profiles | None:
+        """The learned profiles, if they are there."""
+        folder = self.profiles or self.folder / "profiles"
+        if self.route is None or not (self.profiles or folder.is_dir()):
+            return None
+        return Profiles(folder, self.route, self.order())

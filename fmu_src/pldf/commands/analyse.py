@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from math import isnan
 from pathlib import Path
 from typing import Final, Literal
@@ -17,7 +16,7 @@ from ..analysis.analysis_tables import write_tables
 from ..analysis.published import DRIVERS, TESTS, published_means
 from ..analysis.questionnaires import SCALES, Questionnaire
 from ..analysis.study_folder import StudyFolder
-from .shared.mapping import add_map, chosen_map, remember_map
+from .shared.mapping import add_map, chosen_map, remember_map, tell
 from .shared.progress import progress_bar
 from .shared.road import add_road, chosen_road
 
@@ -44,10 +43,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="with drives.csv or recordings/PARTICIPANT_PHASE.csv, and questionnaire.csv if any",
     )  # fmt: skip
     parser.add_argument(
-        "--without", action="append", default=[], metavar="PARTICIPANT",
-        help="leave this participant out (repeatable)",
+        "--without", action="append", default=[], metavar="NAME",
+        help="leave out a participant (P07), a drive (P07_B2) or a recording by the name of its "
+        "file (repeatable); with a reason that the report quotes: FOLDER/exclusions.csv",
     )  # fmt: skip
     add_road(parser, "road driven, needed if recordings lack columns")
+    parser.add_argument(
+        "--profiles", type=Path, metavar="FOLDER",
+        help="learned profiles of the participants, for recordings of system B without "
+        "set_speed_offset_mps (default: FOLDER/profiles)",
+    )  # fmt: skip
     add_map(parser)
     parser.add_argument(
         "--out", type=Path, metavar="FOLDER", help="tables as CSV (default: FOLDER/analysis)"
@@ -72,14 +77,15 @@ def run(options: argparse.Namespace) -> None:
     """Analyse, write the tables, print what was found and where it is."""
     road = chosen_road(options)
     route = road.route if road else None
-    study = StudyFolder(options.folder, route, frozenset(options.without), chosen_map(options))
+    study = StudyFolder(
+        options.folder, route, frozenset(options.without), chosen_map(options), options.profiles
+    )
     remember_map(options, options.folder)
     with progress_bar("read", 1.0, "recordings") as bar:  # analyse tells how many there are
         task = bar.task_ids[0]
         analysis = analyse(study, lambda done, all_: bar.update(task, completed=done, total=all_))
-    for finding in analysis.notes:
-        if finding.severity == "warning":
-            print(f"warning: {finding}", file=sys.stderr)
+    answers = analysis.questionnaire.notes if analysis.questionnaire else ()
+    tell(n for n in analysis.notes if n.severity == "warning" or n not in answers)
     written = write_tables(analysis, options.out or options.folder / "analysis")
     console = Console()
     console.print(_means(analysis))

@@ -23,6 +23,7 @@ from .recording import Recording
 # Decision: a set speed that changes up to this long before or after a sign changes because of it: a
 # second of delay, and half a second for the rounding of places and times.
 SIGN_LAG_S: Final = 1.5
+NO_SET_SPEED: Final = "neither set_speed_mps nor set_speed_offset_mps was recorded"
 # What stands in for a column, where that is more than a derivative.
 _HOWS: Final = {
     "limit_mps": "from the road",
@@ -170,13 +171,13 @@ def _told(
     if "set_speed_mps" not in recording:
         yield Finding(
             "warning", file, 0, "",
-            "neither set_speed_mps nor set_speed_offset_mps was recorded",
+            NO_SET_SPEED,
             "the set speed counts as never changed by the driver",
             "record one of them, or a column set_speed_offset_mps of zeros if nobody could",
         )  # fmt: skip
         return
     tolerance = KMH_PER_MPS * function.record.learning_offset_tolerance_mps
-    late = f"; late or early at signs in {at_signs} rows, which are none" if at_signs else ""
+    late = "; not where it is but late or early for a sign" if at_signs else ""
     yield Finding(
         "note", file, 0, "",
         "set_speed_offset_mps not recorded, so derived: what set_speed_mps differs from limit and "

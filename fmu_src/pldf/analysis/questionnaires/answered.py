@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,7 +11,7 @@ import numpy as np
 from ...findings import Finding
 from ...kernel.arrays import FloatArray
 from .scales import SCALES
-from .sheet import Filled, read_sheet
+from .sheet import Filled, LeftOut, read_sheet
 from .survey_map import SurveyMap
 
 # Participant and system.
@@ -51,7 +51,10 @@ class Questionnaire:
 
 
 def read_questionnaire(
-    path: Path, without: Collection[str] = (), names: SurveyMap | None = None
+    path: Path,
+    left_out: LeftOut = lambda _who, _drive: False,
+    names: SurveyMap | None = None,
+    known_as: Callable[[str], str] = str,
 ) -> Questionnaire:
     """Read the answers in the file ``path``, an export of a survey tool or a table of our own.
 
@@ -61,14 +64,16 @@ def read_questionnaire(
 
     Args:
         path: the file.
-        without: participants to pass over.
+        left_out: says of a participant and a drive, or of the participant if that is empty,
+            whether the answers are passed over.
         names: what columns and answers mean; None: they are ours, ``laan_1`` and 1 to 5.
+        known_as: returns what a participant is called in the study.
 
     Raises:
         ModelError: naming file, line, column and value of what is missing or no answer.
     """
     names = names or SurveyMap()
-    sheet = read_sheet(path, without, names)
+    sheet = read_sheet(path, left_out, names, known_as)
     items, scores = _Means(), _Means()
     notes = list(sheet.notes)
     for filled in sheet.filled:

@@ -7,7 +7,7 @@ SoSci Survey may have two (names, labels); both are recognised.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import nan
 from pathlib import Path
@@ -33,6 +33,10 @@ _TICKED: Final = (
     "the number of a box, 1 (left) to 5 (right), nor a known label; correct it, or say in a "
     "mapping file which box it is, [questionnaire.answers], or that it is none, missing"
 )
+
+
+# Says of a participant and a drive, or of the participant if that is empty, whether not to count.
+LeftOut = Callable[[str, str], bool]
 
 
 class Filled(NamedTuple):
@@ -66,8 +70,10 @@ class Sheet:
     notes: Sequence[Finding]
 
 
-def read_sheet(path: Path, without: Collection[str], names: SurveyMap) -> Sheet:
-    """Read the questionnaires in the file ``path``.
+def read_sheet(
+    path: Path, left_out: LeftOut, names: SurveyMap, known_as: Callable[[str], str]
+) -> Sheet:
+    """Read the questionnaires in the file ``path``; arguments as of ``read_questionnaire``.
 
     Raises:
         ModelError: naming file, line, column and value of all that is missing or no answer.
@@ -83,7 +89,9 @@ def read_sheet(path: Path, without: Collection[str], names: SurveyMap) -> Sheet:
         rows_min=0,
         key=tuple(filter(None, (columns.participant, columns.group))),
     )
-    table = read_table(path, form, {columns.participant: without})
+    table = read_table(path, form, lambda row: left_out(row[columns.participant], ""))
+    people = table.texts[columns.participant]
+    people[:] = [known_as(name) if name else "" for name in people]
     heading = _heading(table, columns, names)
     counted = [row for row in range(heading, len(table)) if _counts(table, row, names)]
     rows = [row for row in counted if not _is_empty(table, row, columns, names)]
@@ -91,7 +99,11 @@ def read_sheet(path: Path, without: Collection[str], names: SurveyMap) -> Sheet:
     scored, told = _scored(table, rows, columns, names)
     asked = {one.item for one in columns.asked.values()}
     return Sheet(
-        list(_filled(table, groups, columns, scored)),
+        [
+            one
+            for one in _filled(table, groups, columns, scored)
+            if not left_out(one.participant, one.group if len(one.group) > 1 else "")
+        ],
         [scale for scale, items in SCALES.items() if asked.issuperset(items)],
         [*_notes(table, heading, len(counted), len(rows)), *told],
     )

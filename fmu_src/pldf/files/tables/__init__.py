@@ -1,7 +1,7 @@
 """Tables: CSV files with a header line, declared by their columns; one reader, one writer."""
 
 from .declared import Column, Fault, Format, TableError
-from .reader import Table, parse_table, read_header, read_table
+from .reader import LeftOut, Table, parse_table, read_header, read_table
 from .writer import Cell, table_csv, write_table
 
 __all__ = (
@@ -9,6 +9,7 @@ __all__ = (
     "Column",
     "Fault",
     "Format",
+    "LeftOut",
     "Table",
     "TableError",
     "parse_table",

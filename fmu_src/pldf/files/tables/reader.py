@@ -15,7 +15,7 @@ import csv
 import io
 import os
 import re
-from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from math import nan
@@ -30,6 +30,9 @@ from ...kernel.arrays import FloatArray
 from ..disk import reason
 from .declared import Column, Fault, Format, TableError
 from .writer import plain_text
+
+# Says of the cells of a row, by column, whether nothing of it is wanted.
+LeftOut = Callable[[Mapping[str, str]], bool]
 
 _CELL_MAX: Final = 40  # characters of a wrong cell that an error repeats
 _HEADER_MAX: Final = 120  # the same for names of columns
@@ -83,20 +86,21 @@ class Table:
 
 
 def read_table(
-    path: str | os.PathLike[str], form: Format, without: Mapping[str, Collection[str]] | None = None
+    path: str | os.PathLike[str], form: Format, left_out: LeftOut | None = None
 ) -> Table:
     """Read the table in the file ``path``.
 
     Args:
         path: the file.
         form: the format that it should have.
-        without: column -> texts; rows with one of them are passed over, whatever else they hold.
+        left_out: says of the cells of a row, by column, whether it is passed over, whatever else
+            it holds.
 
     Raises:
         ModelError: the file cannot be read.
         TableError: it cannot be used; with file, line, column, value and the way out.
     """
-    return parse_table(_content(path), Path(path), form, without)
+    return parse_table(_content(path), Path(path), form, left_out)
 
 
 def read_header(path: str | os.PathLike[str]) -> tuple[str, ...]:
@@ -120,9 +124,7 @@ def _content(path: str | os.PathLike[str]) -> bytes:
         raise ModelError(f"{path}: cannot be read ({reason(error)}); check the path") from error
 
 
-def parse_table(
-    data: bytes, path: Path, form: Format, without: Mapping[str, Collection[str]] | None = None
-) -> Table:
+def parse_table(data: bytes, path: Path, form: Format, left_out: LeftOut | None = None) -> Table:
     """Return the table that ``data``, the content of ``path``, holds; as ``read_table``."""
     lines, comments = _lines(data, path), list[str]()
     records = _records(lines, path, comments)
@@ -131,10 +133,10 @@ def parse_table(
         raise TableError(path, [Fault(0, "", f"no header; {_has(form)}")])
     table = Table(path, form, line, comments=tuple(comments))
     at = _positions(table, header)
-    if without or not (len(at) == len(header) and _fill_with_numbers(table, lines, at)):
+    if left_out or not (len(at) == len(header) and _fill_with_numbers(table, lines, at)):
         body = list(records)
-        for name, texts in (without or {}).items():
-            body = [record for record in body if _cell(record[1], at[name]) not in texts]
+        if left_out:
+            body = [(line, row) for line, row in body if not left_out(_cells(row, at))]
         _fill(table, body, at, len(header))
     table.refuse(_too_few(table))
     return table
@@ -248,8 +250,8 @@ def _positions(table: Table, header: Sequence[str]) -> dict[str, int]:
     return {name: names.index(name) for name in form.names if name in names}
 
 
-def _cell(row: Sequence[str], place: int) -> str:
-    return row[place].strip() if place < len(row) else ""
+def _cells(row: Sequence[str], at: Mapping[str, int]) -> dict[str, str]:
+    return {name: row[place].strip() if place < len(row) else "" for name, place in at.items()}
 
 
 def _convert(table: Table, column: Column, cells: Sequence[str]) -> list[Fault]:
