@@ -25,8 +25,8 @@ learned = pldf.learn(pldf.read_recording(drive), route)
 report = explain(learned)
 print(f"pedals in {report['rates']['pedal']:.0%} of the time")
 for entry in report["interventions"]:
-    outcome = entry.get("why_not") or f"{entry['learned_m']} m learned"
-    print(f"intervention from {entry['start_m']:.0f} m to {entry['end_m']:.0f} m: {outcome}")
+    place = f"{entry['start_m']:.0f} m to {entry['end_m']:.0f} m"
+    print(f"intervention from {place}: {entry['told']}")
 
 before_mps, after_mps = pldf.base_profile(route), learned.iteration.learned_mps
 print("   place  before   after")

@@ -6,8 +6,17 @@ import re
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as hs
+from laboratory import function, play, road, travel_times, within
 from pldf.function import DrivingFunction
-from pldf.kernel.codes import BOUND_LEGAL_LIMIT
+from pldf.kernel.codes import (
+    ACTIVE,
+    BOUND_LEGAL_LIMIT,
+    GAS_OVERRIDE,
+    OUTCOME_HOLE,
+    OUTCOME_LEARNED,
+)
 from pldf.outcomes import TEXTS, held_places, signed, tenths, whole
 from told_drive import driven, write_road
 
@@ -74,6 +83,39 @@ def test_a_hole_is_told_with_time_and_length(made: DrivingFunction) -> None:
     (lost,) = (pedal for pedal in made.outcomes().pedals if pedal.hole_m)
     assert lost.hole_m == pytest.approx(50.0, abs=1.0)  # 2 s at 25 m/s
     assert lost.hole_s == pytest.approx(2.0, abs=0.04)
+
+
+places = hs.lists(hs.floats(5.0, 990.0), min_size=2, max_size=12, unique=True).map(sorted)
+
+
+@settings(deadline=None, max_examples=60)
+@given(places, hs.lists(hs.floats(1.0, 45.0), min_size=3, max_size=8), places)
+def test_whatever_is_driven_what_is_told_fits_what_was_learned(
+    pressed: list[float], speeds: list[float], lost: list[float]
+) -> None:
+    """Each metre learned is told of one intervention; what is not learned has its reason."""
+    made = function(road(1000.0))
+    s_m = np.arange(0.0, 999.5, 0.5)
+    speed = np.interp(s_m, np.linspace(0.0, 1000.0, len(speeds)), speeds)
+    gas = within(s_m, zip(pressed[::2], pressed[1::2], strict=False))
+    kept = ~within(s_m, [(lost[0], lost[1])])
+    play(
+        made,
+        s_m[kept],
+        speed[kept],
+        time_s=travel_times(s_m, speed)[kept],
+        mode=np.where(gas, GAS_OVERRIDE, ACTIVE)[kept],
+    )
+    learned = made.learn()
+    pedals = made.outcomes().pedals
+    for pedal in pedals:
+        assert (pedal.learned_m > 0) == (pedal.outcome == OUTCOME_LEARNED)
+        assert (pedal.hole_m > 0) == (pedal.outcome == OUTCOME_HOLE)
+        assert (pedal.hole_s > 0) == (pedal.outcome == OUTCOME_HOLE)
+        assert not pedal.holds or pedal.outcome == OUTCOME_LEARNED
+    assert sum(pedal.learned_m for pedal in pedals) == np.count_nonzero(learned.drive)
+    held = sum(hold.to_m - hold.from_m + 1 for pedal in pedals for hold in pedal.holds)
+    assert held == np.count_nonzero(learned.bound)
 
 
 def test_many_bounds_are_counted_not_listed(made: DrivingFunction) -> None:

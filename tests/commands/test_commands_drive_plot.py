@@ -70,6 +70,11 @@ def test_a_script_drives_and_its_lesson_is_told(drive: Run) -> None:
     assert (status, err) == (0, "")
     assert "2 interventions" in out
     assert " m as drive 1, on average " in out
+    told = [line.strip() for line in out.splitlines() if line.startswith("  ")]
+    assert [line.partition(",")[0] for line in told[:3]] == [
+        "pedal intervention 1", "pedal intervention 2", "set speed",
+    ]  # fmt: skip
+    assert ": learned from " in told[0] and told[2].endswith(": +5.0 km/h learned")
     assert "driver-000017_route-" in out
     assert Path("pictures/a.png").exists()
     recording = read_recording("a.csv")
