@@ -220,6 +220,7 @@ def test_reversed_items_reliability_and_answers_after_each_drive(tmp_path: Path)
 @pytest.mark.parametrize(
     ("change", "told"),
     [
+        ({("P3", "B", "laan_4"): "\u0e52"}, "laan_4: '\u0e52' is not the number of a box"),
         ({("P3", "B", "laan_4"): "2.5"}, "line 7, participant P3, system B, laan_4: '2.5' is not"),
         (
             {("P3", "B", "laan_4"): "good"},

@@ -22,7 +22,7 @@ MISSING: Final = frozenset({"", "na", "n/a", "nan", "-99", "-9"})
 UNKNOWN: Final = nan
 
 _CODE: Final = re.compile("(?:a|ao)0*([1-5])")
-_NUMBER: Final = re.compile(r"[+-]?\d+(?:[.,]\d*)?")
+_NUMBER: Final = re.compile(r"[+-]?\d+(?:[.,]\d*)?", re.ASCII)
 
 # The favourable word is not always the left one; these are as printed, left and right.
 _ENDS: Final[Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]]] = {
