@@ -47,8 +47,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # No option before the command takes a value, so the first word is the command.
     chosen = next((word for word in arguments if not word.startswith("-")), None)
     options = build_parser(chosen).parse_args(arguments)
+    status = 0
     try:
-        options.run(options)
+        status = options.run(options) or 0
         sys.stdout.flush()
     except BrokenPipeError:  # the reader (head, a pager) has seen enough; that is no error
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -61,7 +62,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("pldf: interrupted", file=sys.stderr)
         return 130
-    return 0
+    return status
 
 
 def _refused(error: OSError) -> str:

@@ -149,7 +149,7 @@ def test_a_unit_that_the_other_columns_contradict_is_named_with_its_factor(unit:
     assert finding.severity == "error"
     assert finding.place == column
     assert factor in finding.text and f"{column} in {unit}?" in finding.text
-    assert f'{column} = {{ unit = "{unit}" }}' in finding.way_out
+    assert f'{column} = {{ column = "{column}", unit = "{unit}" }}' in finding.way_out
 
 
 def test_two_units_at_once_are_named_both() -> None:

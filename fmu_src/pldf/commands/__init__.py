@@ -11,6 +11,7 @@ COMMANDS: Final = {
     "route": "Show a route: limits, curves and base profile of an OpenDRIVE or CSV file.",
     "script": "Show a driver script: what is pressed where or when, and for how long.",
     "drive": "Drive once with the coupled FMUs; write the recording and a picture of it.",
+    "check": "Check roads, recordings, tables or whole studies: every problem at once.",
     "learn": "Learn from the recording of a drive (SPAA) and write the next profile.",
     "plot": "Draw recordings: speed over distance, interventions, pedals.",
     "profiles": "Show, export and roll back what was learned for drivers and routes.",

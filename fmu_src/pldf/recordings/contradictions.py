@@ -144,7 +144,7 @@ def _pedals(recording: Recording, file: str) -> Iterator[Finding]:
                     "warning", file, 0, name, f"up to {highest:.4g}, wanted is 0 to 1"
                     + ("; percent?" if in_percent else ""),
                     f"a foot that rests counts as pressed (from {PRESSED:g} on)",
-                    f'state the unit in a mapping file: {name} = {{ unit = "%" }}'
+                    unit_doubts.stated((name, "%"))
                     if in_percent else "scale it to 0 to 1 by a factor in a mapping file",
                 )  # fmt: skip
             elif highest > _PEDAL_MAX or lowest < 1.0 - _PEDAL_MAX:

@@ -60,9 +60,9 @@ def unit_doubts(recording: Recording, file: str, route: RouteArrays | None) -> I
     yield from told
     if not told:
         yield from _too_fast(recording, file)
+        yield from _acceleration(recording, file)
     yield from _speeds_and_limit(recording, file, route)
     yield from _offset(recording, file)
-    yield from _acceleration(recording, file)
 
 
 def _speed_and_position(recording: Recording, file: str) -> Iterator[Finding]:
@@ -89,7 +89,8 @@ def _speed_and_position(recording: Recording, file: str) -> Iterator[Finding]:
         f"speed_mps is {ratio:.4g} times what s_m and time_s say"
         + (f": {_asked(units)}" if units else ""),
         "every speed, position or duration would be wrong by that",
-        _way_out(units) if units else "check the units of speed_mps, s_m and time_s",
+        stated(*((one.column, one.unit) for one in units)) if units
+        else "check the units of speed_mps, s_m and time_s",
     )  # fmt: skip
 
 
@@ -97,9 +98,10 @@ def _asked(units: tuple[_Unit, ...]) -> str:
     return " and ".join(f"{unit.column} in {unit.unit}" for unit in units) + "?"
 
 
-def _way_out(units: tuple[_Unit, ...]) -> str:
-    lines = ", ".join(f'{unit.column} = {{ unit = "{unit.unit}" }}' for unit in units)
-    return f"state the unit in a mapping file (--map): {lines} under [recording]"
+def stated(*units: tuple[str, str]) -> str:
+    """Return the way out: lines of a mapping file that state the unit of our columns."""
+    lines = ", ".join(f'{name} = {{ column = "{name}", unit = "{unit}" }}' for name, unit in units)
+    return f"state the unit in a mapping file (--map), under [recording]: {lines}"
 
 
 def _ratios(recording: Recording) -> FloatArray:
@@ -207,8 +209,7 @@ def _wrong_unit(file: str, name: str, text: str, unit: str, what: str) -> Findin
     return Finding(
         "error", file, 0, name, f"{text}: {name} in {unit}?",
         f"{what} is not so; rates and what is learned would be wrong",
-        f'state the unit in a mapping file (--map): {name} = {{ unit = "{unit}" }} under '
-        "[recording]",
+        stated((name, unit)),
     )  # fmt: skip
 
 
@@ -237,7 +238,8 @@ def _acceleration(recording: Recording, file: str) -> Iterator[Finding]:
     whole = np.diff(time) <= HOLE_S
     steps = np.where(whole, 0.5 * (stated[1:] + stated[:-1]) * np.diff(time), 0.0)
     by_speed = np.where(whole, np.diff(speed), 0.0)
-    edges = np.searchsorted(time, np.arange(time[0], time[-1], 2.0 * HOLE_S))[:-1]
+    edges = np.searchsorted(time, np.arange(time[0], time[-1], 2.0 * HOLE_S))
+    edges = np.unique(edges[edges < len(steps)])[:-1]
     if len(edges) < 10:
         return
     stated_change, change = (np.add.reduceat(x, edges) for x in (steps, by_speed))

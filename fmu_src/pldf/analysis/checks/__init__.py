@@ -1,0 +1,7 @@
+"""What is wrong with files before anybody counts on them: all of it at once."""
+
+from .checked import CheckedFile, Checks
+from .files import check_file
+from .folder import check_drives, check_folder, is_study
+
+__all__ = ("CheckedFile", "Checks", "check_drives", "check_file", "check_folder", "is_study")

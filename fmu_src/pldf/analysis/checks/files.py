@@ -1,0 +1,168 @@
+"""One file checked by the reader of its kind."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from vehicle_models.driver_script import read_script
+
+from ...errors import ModelError
+from ...files.tables import read_table
+from ...findings import Finding
+from ...kernel.arrays import RouteArrays
+from ...profiles.store import read_profile
+from ...recordings.contradictions import contradictions
+from ...recordings.mapping import RecordingMap, read_map, remembered_map
+from ...recordings.quality import quality_of
+from ...recordings.recording import Recording, read_recording
+from ...roads import read_route
+from ...route_facts import route_facts
+from ...study.participants_file import read_participants
+from ...study.study_file import read_study
+from ..drives_table import read_drives
+from ..problems import findings_of
+from ..questionnaires import read_questionnaire, survey_map
+from .checked import CheckedFile
+from .kinds import PEOPLE, Kind, kind_of
+from .names import people
+
+_UNKNOWN: Final = (
+    "neither a road, a recording, a questionnaire, a table of drives or participants, a driver "
+    "script, a profile, a study file nor a mapping file"
+)
+
+
+class Known(NamedTuple):
+    """What is known about the files.
+
+    Attributes:
+        route: the road driven, None if it is not known.
+        map: what columns are called; None: a ``map.toml`` near the file, if there.
+        start_road: id of the OpenDRIVE road to start with.
+        default_limit_mps: where an OpenDRIVE road states none.
+    """
+
+    route: RouteArrays | None = None
+    map: RecordingMap | None = None
+    start_road: str | None = None
+    default_limit_mps: float | None = None
+
+
+def check_file(path: Path, known: Known) -> CheckedFile:
+    """Return all that is wrong with the file ``path``, and what it was taken for."""
+    kind: Kind = ""
+    try:
+        kind = kind_of(path)
+        if not kind:
+            raise ModelError(f"{path}: {_UNKNOWN}")
+        if kind == "recording":
+            return check_recording(path, known)
+        findings = _CHECKS[kind](path, known)
+    except ModelError as error:
+        findings = findings_of(error, str(path))
+    return CheckedFile(path, kind, tuple(findings))
+
+
+def check_recording(path: Path, known: Known) -> CheckedFile:
+    """Return what is wrong with a recording, and how good it is."""
+    checked = CheckedFile(path, "recording")
+    try:
+        recording = read_recording(path, known.map)
+    except ModelError as error:
+        return replace(checked, findings=tuple(findings_of(error, str(path))))
+    return replace(
+        checked,
+        findings=(*recording.notes, *contradictions(recording, path, known.route)),
+        quality=quality_of(recording, known.route),
+        content=_content(recording),
+    )
+
+
+def _content(recording: Recording) -> str:
+    """Return what tells drives apart, however the file is written."""
+    digest = hashlib.sha256()
+    for name in ("time_s", "s_m", "speed_mps"):
+        digest.update(np.ascontiguousarray(recording[name]).tobytes())
+    return digest.hexdigest()
+
+
+def _road(path: Path, known: Known) -> list[Finding]:
+    route = read_route(path, start_road=known.start_road, default_limit_mps=known.default_limit_mps)
+    facts = route_facts(route)
+    return [
+        Finding(
+            "note", str(path), 0, "",
+            f"a road of {route.length_m:.0f} m, {len(facts.limits)} limits, "
+            f"{len(facts.curves)} curves that bind",
+        )
+    ]  # fmt: skip
+
+
+def _drives(path: Path, _known: Known) -> list[Finding]:
+    drives = read_drives(path)
+    return list(people((drive.participant for drive in drives), str(path)))
+
+
+def _questionnaire(path: Path, known: Known) -> list[Finding]:
+    found = known.map or remembered_map(path)
+    names = survey_map(found.questionnaire, found.name) if found else None
+    answers = read_questionnaire(path, names=names)
+    who = dict.fromkeys(name for given in answers.items.values() for name, _ in given)
+    return [*answers.notes, *people(who, str(path))]
+
+
+def _people(path: Path, _known: Known) -> list[Finding]:
+    table = read_table(path, PEOPLE)
+    who = table.texts["participant"]
+    table.refuse(
+        table.fault(row, "", f"{who[row]} occurs twice, first in line {line}")
+        for row, line in table.repeated(who)
+    )
+    return list(people(who, str(path)))
+
+
+def _participants(path: Path, _known: Known) -> list[Finding]:
+    read_participants(path)
+    return []
+
+
+def _script(path: Path, _known: Known) -> list[Finding]:
+    read_script(path)
+    return []
+
+
+def _profile(path: Path, _known: Known) -> list[Finding]:
+    profile = read_profile(path)
+    text = f"a profile of {profile.nodes - 1} m with {len(profile.iterations)} iterations"
+    return [Finding("note", str(path), 0, "", text)]
+
+
+def _study_file(path: Path, _known: Known) -> list[Finding]:
+    study = read_study(path)
+    text = f"a study of {len(study.participants)} participants: {study.title}"
+    return [Finding("note", str(path), 0, "", text)]
+
+
+def _map(path: Path, _known: Known) -> list[Finding]:
+    found = read_map(path)
+    survey_map(found.questionnaire, found.name)
+    return []
+
+
+_CHECKS: Final[Mapping[Kind, Callable[[Path, Known], list[Finding]]]] = {
+    "road": _road,
+    "drives": _drives,
+    "questionnaire": _questionnaire,
+    "participants": _participants,
+    "people": _people,
+    "driver script": _script,
+    "profile": _profile,
+    "study file": _study_file,
+    "mapping file": _map,
+}

@@ -1,0 +1,105 @@
+"""What a file is, by its content."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Final, Literal
+
+from vehicle_models.driver_script import SCRIPT
+
+from ...errors import ModelError
+from ...files.tables import Column, Format, read_header
+from ...profiles.file_parts import MAGIC
+from ...recordings.columns import RECORDING
+from ...recordings.inputs import SUFFIXES
+from ...roads.csv_file import ROUTE
+from ...study.drive_row import DRIVES
+from ...study.participants_file import PARTICIPANTS
+
+Kind = Literal[
+    "road", "recording", "questionnaire", "drives", "participants", "people",
+    "driver script", "profile",
+    "study file", "mapping file", "",
+]  # fmt: skip
+
+# What a laboratory knows about its participants: any columns beside their names.
+PEOPLE: Final = Format(
+    "list of participants",
+    "participant",
+    (Column("participant", "text", wanted="the name of a participant"),),
+)
+_FORMATS: Final[dict[Kind, Format]] = {
+    "recording": RECORDING,
+    "road": ROUTE,
+    "drives": DRIVES,
+    "participants": PARTICIPANTS,
+    "driver script": SCRIPT,
+}
+_ITEMS: Final = ("laan_", "profile_")
+_FITS: Final = 0.5  # share of the needed columns that tells what a table is
+_MAP_TABLES: Final = frozenset(("recording", "mode", "eligible", "questionnaire"))
+_TABLE_SUFFIXES: Final = (".csv", ".tsv", ".txt", "")
+# Files with another ending are checked when they are named, not when a folder is.
+KNOWN_SUFFIXES: Final = tuple(
+    dict.fromkeys((".csv", ".tsv", ".xodr", ".xml", ".toml", ".pldf", *SUFFIXES))
+)
+
+
+def kind_of(path: Path) -> Kind:
+    """Return what ``path`` is by its content; empty if that is nothing known.
+
+    A table is what most of its needed columns say; one of other names is taken for a questionnaire
+    if it is called so, else for a recording, which a mapping file can make one of.
+
+    Raises:
+        ModelError: the file cannot be read.
+    """
+    try:
+        with path.open("rb") as file:
+            start = file.read(1 << 16)
+    except OSError as error:
+        raise ModelError(f"{path}: cannot be read ({error.strerror}); check the path") from None
+    suffix = path.suffix.lower()
+    if start.startswith(MAGIC) or suffix == ".pldf":
+        return "profile"
+    if b"<OpenDRIVE" in start or suffix in (".xodr", ".xml"):
+        return "road"
+    if suffix == ".toml":
+        return _kind_of_toml(path)
+    if suffix in _TABLE_SUFFIXES:
+        return _kind_of_table(path)
+    return "recording" if suffix in SUFFIXES else ""
+
+
+def _kind_of_toml(path: Path) -> Kind:
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError):
+        return "study file"  # its reader says what is wrong
+    return "mapping file" if _MAP_TABLES.intersection(content) == content.keys() else "study file"
+
+
+def _kind_of_table(path: Path) -> Kind:
+    try:
+        names = read_header(path)
+    except ModelError:
+        return "questionnaire" if _called_questionnaire(path) else "recording"
+    if any(name.lower().startswith(_ITEMS) for name in names) and "s_m" not in names:
+        return "questionnaire"
+    shares = {kind: _share_of(form, names) for kind, form in _FORMATS.items()}
+    best = max(shares, key=lambda kind: shares[kind])
+    if shares[best] >= _FITS:
+        return best
+    if "participant" in names:
+        return "people"
+    return "questionnaire" if _called_questionnaire(path) else "recording"
+
+
+def _share_of(form: Format, names: tuple[str, ...]) -> float:
+    needed = [column.name for column in form.columns if column.needed]
+    return sum(name in names for name in needed) / len(needed)
+
+
+def _called_questionnaire(path: Path) -> bool:
+    return any(word in path.stem.lower() for word in ("questionnaire", "survey", "fragebogen"))
