@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -26,6 +26,8 @@ from .names import Names
 from .problems import StudyError
 from .questionnaires import SurveyMap, survey_map
 
+Seen = Callable[[Path, Recording], None]
+
 SYSTEMS: Final = ("A", "B")
 
 # What says of a drive what the function had learned before.
@@ -44,6 +46,8 @@ class StudyFolder:
         profiles: folder of the learned profiles, for recordings of B that do not tell what was
             learned before; None: ``profiles`` in the folder, if there.
         map: what columns and answers are called; None: ``map.toml`` in the folder, if there.
+        names: the participants met so far.
+        seen: called with each recording as it was read, before columns are derived for it.
     """
 
     folder: Path
@@ -52,6 +56,7 @@ class StudyFolder:
     map: RecordingMap | None = None
     profiles: Path | None = None
     names: Names = field(default_factory=Names)
+    seen: Seen = lambda _path, _recording: None
 
     @cached_property
     def exclusions(self) -> Exclusions:
@@ -157,6 +162,7 @@ class StudyFolder:
             ModelError: the file, or the profile that the drive followed, cannot be used.
         """
         recording = read_recording(path, self.map)
+        self.seen(path, recording)
         if self.route is None:
             return recording
         participant, phase = next(drive for drive, one in self.listed[0].items() if one == path)

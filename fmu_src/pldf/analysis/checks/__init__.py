@@ -2,6 +2,6 @@
 
 from .checked import CheckedFile, Checks
 from .files import check_file
-from .folder import check_drives, check_folder, is_study
+from .folder import analysed, check_folder, is_study
 
-__all__ = ("CheckedFile", "Checks", "check_drives", "check_file", "check_folder", "is_study")
+__all__ = ("CheckedFile", "Checks", "analysed", "check_file", "check_folder", "is_study")

@@ -9,6 +9,7 @@ from typing import Final
 
 from ...findings import Finding, Severity
 from ...recordings.quality import Quality
+from ..problems import brought_together
 
 SEVERITIES: Final[tuple[Severity, ...]] = ("error", "warning", "note")
 
@@ -54,9 +55,12 @@ class Checks:
 
     @property
     def findings(self) -> list[Finding]:
-        """All findings, errors first, then by file and line; each once."""
+        """All findings, errors first, then by file and line; each once.
+
+        What is the same of several files of a folder is one finding.
+        """
         every = [*(one for file in self.files for one in file.findings), *self.shared]
-        return in_order(every)
+        return in_order(brought_together(dict.fromkeys(every)))
 
     def of(self, severity: Severity) -> list[Finding]:
         """Return the findings of one severity."""

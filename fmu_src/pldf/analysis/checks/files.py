@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -26,6 +25,7 @@ from ...route_facts import route_facts
 from ...study.participants_file import read_participants
 from ...study.study_file import read_study
 from ..drives_table import read_drives
+from ..exclusions import read_exclusions
 from ..problems import findings_of
 from ..questionnaires import read_questionnaire, survey_map
 from .checked import CheckedFile
@@ -71,15 +71,20 @@ def check_file(path: Path, known: Known) -> CheckedFile:
 
 def check_recording(path: Path, known: Known) -> CheckedFile:
     """Return what is wrong with a recording, and how good it is."""
-    checked = CheckedFile(path, "recording")
     try:
         recording = read_recording(path, known.map)
     except ModelError as error:
-        return replace(checked, findings=tuple(findings_of(error, str(path))))
-    return replace(
-        checked,
-        findings=(*recording.notes, *contradictions(recording, path, known.route)),
-        quality=quality_of(recording, known.route),
+        return CheckedFile(path, "recording", tuple(findings_of(error, str(path))))
+    return checked_recording(recording, path, known)
+
+
+def checked_recording(recording: Recording, path: Path, known: Known) -> CheckedFile:
+    """Return what contradicts itself in a recording that was read, and how good it is."""
+    return CheckedFile(
+        path,
+        "recording",
+        (*recording.notes, *contradictions(recording, path, known.route)),
+        quality_of(recording, known.route),
         content=_content(recording),
     )
 
@@ -127,6 +132,11 @@ def _people(path: Path, _known: Known) -> list[Finding]:
     return list(people(who, str(path)))
 
 
+def _exclusions(path: Path, _known: Known) -> list[Finding]:
+    read_exclusions(path)
+    return []
+
+
 def _participants(path: Path, _known: Known) -> list[Finding]:
     read_participants(path)
     return []
@@ -161,6 +171,7 @@ _CHECKS: Final[Mapping[Kind, Callable[[Path, Known], list[Finding]]]] = {
     "questionnaire": _questionnaire,
     "participants": _participants,
     "people": _people,
+    "exclusions": _exclusions,
     "driver script": _script,
     "profile": _profile,
     "study file": _study_file,

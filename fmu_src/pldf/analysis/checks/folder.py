@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -11,24 +12,28 @@ import numpy as np
 
 from ...errors import ModelError
 from ...findings import Finding
-from ...recordings.inputs import SUFFIXES
 from ...recordings.mapping import MAP_FILE
+from ...recordings.recording import Recording
 from ...roads import route_arrays
 from ...study.study_file import read_study
-from ..analysis import analyse
-from ..problems import findings_of
+from ..analysis import Analysis, analyse
+from ..exclusions import EXCLUSIONS
+from ..gathered import Reading
+from ..problems import StudyError, findings_of
 from ..study_folder import StudyFolder
 from .checked import CheckedFile, Checks
-from .files import Known, check_file, check_recording
+from .files import Known, check_file, check_recording, checked_recording
 from .names import people
-
-Done = Callable[[int, int], None]
 
 RECORDINGS: Final = "recordings"
 _STUDY: Final = "study.toml"
 _MARKS: Final = (RECORDINGS, "drives.csv", "questionnaire.csv", _STUDY, "participants.csv")
-_TABLES: Final = (_STUDY, MAP_FILE, "participants.csv", "drives.csv")
+_TABLES: Final = (_STUDY, MAP_FILE, EXCLUSIONS, "participants.csv", "drives.csv")
 _HALF: Final = 0.9  # of the way that the others drive
+
+
+def _silently(_done: int, _all: int) -> None:
+    """Tell nobody how far reading has come."""
 
 
 def is_study(folder: Path) -> bool:
@@ -36,59 +41,79 @@ def is_study(folder: Path) -> bool:
     return any((folder / name).exists() for name in _MARKS)
 
 
-def check_folder(study: StudyFolder, done: Done = lambda _done, _all: None) -> Checks:
+def check_folder(study: StudyFolder, reading: Reading = _silently) -> Checks:
     """Return all that is wrong with the files of a study, each and together.
 
     Args:
         study: the folder, and what is known about it.
-        done: called with the number of recordings checked and of all.
+        reading: called with the number of recordings read and of all.
     """
-    checks = check_drives(study, done)
+    _, checks = _analysed(study, reading, every_recording=True)
     known = Known(map=study.map)
-    tables = [study.questionnaire, *(study.folder / name for name in _TABLES)]
+    tables = [study.folder / name for name in _TABLES]
     tables += sorted((study.folder / "profiles").glob("*.pldf"))
-    checks += Checks(tuple(check_file(path, known) for path in tables if path.exists()))
-    return checks + Checks(shared=tuple(_analysed(study)))
+    with suppress(ModelError):  # if its map is wrong, that is among the findings
+        tables.append(study.questionnaire)
+    return checks + Checks(tuple(check_file(path, known) for path in tables if path.exists()))
 
 
-def check_drives(study: StudyFolder, done: Done = lambda _done, _all: None) -> Checks:
-    """Return what is wrong with the recordings of a study, each and together."""
+def analysed(study: StudyFolder, reading: Reading = _silently) -> tuple[Analysis, Checks]:
+    """Return the analysis of a study whose files were checked first, and what the check found.
+
+    The warnings are among the notes of the analysis. Of a simulated study only the recordings that
+    its rates come from are checked.
+
+    Raises:
+        StudyError: with all that is wrong.
+    """
+    analysis, checks = _analysed(study, reading, every_recording=not study.study_file)
+    errors = checks.of("error")
+    if analysis is None or errors:
+        raise StudyError(errors)
+    notes = (*analysis.notes, *checks.of("warning"))
+    return replace(analysis, notes=tuple(dict.fromkeys(notes))), checks
+
+
+def _analysed(
+    study: StudyFolder, reading: Reading, every_recording: bool
+) -> tuple[Analysis | None, Checks]:
+    """Analyse and check in one reading of the recordings; no analysis if there are errors."""
     known = Known(route_arrays(study.route) if study.route else None, study.map)
-    paths = _recordings(study)
-    files = []
-    for number, path in enumerate(paths, start=1):
-        checked = check_recording(path, known)
-        participant, _, phase = path.stem.rpartition("_")
-        files.append(replace(checked, participant=participant or path.stem, phase=phase))
-        done(number, len(paths))
+    checked: dict[Path, CheckedFile] = {}
+
+    def take(path: Path, recording: Recording) -> None:
+        checked[path] = checked_recording(recording, path, known)
+
+    analysis = None
+    try:
+        analysis = analyse(replace(study, seen=take), reading)
+        shared = list(analysis.notes)
+    except ModelError as error:
+        shared = findings_of(error, str(study.folder))
+    drives, left_out = _drives(study)
+    for path in study.files() if every_recording else ():
+        if path not in checked and path not in left_out:
+            checked[path] = check_recording(path, known)
+    files = [
+        replace(file, participant=drives[path][0], phase=drives[path][1])
+        if path in drives else file for path, file in sorted(checked.items())
+    ]  # fmt: skip
     if known.route is None:
         files = list(_with_half_drives(files))
     if not study.study_file:  # simulated drivers may well drive the same twice
         files = list(with_copies(files))
-    names = people((file.participant for file in files), str(study.folder / RECORDINGS))
-    return Checks(tuple(files), tuple(names))
+    people_of = list(analysis.participants) if analysis else [who for who, _ in drives.values()]
+    return analysis, Checks(tuple(files), (*shared, *people(people_of, str(study.folder))))
 
 
-def _recordings(study: StudyFolder) -> list[Path]:
-    """Return the files of recordings that are not left out."""
-    return [
-        path
-        for path in sorted((study.folder / RECORDINGS).glob("*.*"))
-        if path.suffix.lower() in SUFFIXES
-        and not study.without.intersection((path.stem, path.stem.rpartition("_")[0]))
-    ]
-
-
-def _analysed(study: StudyFolder) -> Iterator[Finding]:
-    """Yield what an analysis says of tables and files together."""
+def _drives(study: StudyFolder) -> tuple[dict[Path, tuple[str, str]], set[Path]]:
+    """Return participant and phase of each recording that tells them, and what is left out."""
     try:
-        analysis = analyse(study)
-    except ModelError as error:
-        yield from findings_of(error, str(study.folder))
-        return
-    yield from analysis.notes
-    if not (study.folder / RECORDINGS).is_dir():
-        yield from people(analysis.participants, str(analysis.source))
+        drives = {path: drive for drive, path in study.listed[0].items()}
+        left_out = {path for path in study.files() if study.exclusions.has_file(path.stem)}
+    except ModelError:
+        return {}, set()  # the exclusions cannot be read, which is among the findings
+    return drives, left_out
 
 
 def with_copies(files: Sequence[CheckedFile]) -> Iterator[CheckedFile]:

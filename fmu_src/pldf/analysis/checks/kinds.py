@@ -19,7 +19,7 @@ from ...study.participants_file import PARTICIPANTS
 
 Kind = Literal[
     "road", "recording", "questionnaire", "drives", "participants", "people",
-    "driver script", "profile",
+    "exclusions", "driver script", "profile",
     "study file", "mapping file", "",
 ]  # fmt: skip
 
@@ -92,7 +92,7 @@ def _kind_of_table(path: Path) -> Kind:
     if shares[best] >= _FITS:
         return best
     if "participant" in names:
-        return "people"
+        return "exclusions" if "reason" in names else "people"
     return "questionnaire" if _called_questionnaire(path) else "recording"
 
 
