@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -119,7 +120,7 @@ def test_rows_can_be_left_out_whatever_else_they_hold() -> None:
         (
             MIXED,
             "\nwho;x_m\n",
-            "missing column who, x_m, count, on, mode; the header is 'who;x_m', c",
+            "line 2: missing column count, on, mode; a mixture has",
         ),
         (NUMBERS, "a,b,c,a,b\n", "line 1: repeated column a, b; a matrix has the columns a,b,c"),
         (NUMBERS, "#\n#\na,b,c\n\n", "t.csv: no rows below the header (line 3)"),
@@ -159,8 +160,127 @@ def test_too_few_rows_are_refused() -> None:
     assert len(parse("a\n1\n2\n", form)) == 2
 
 
-def test_text_in_another_encoding_is_refused_with_its_line() -> None:
-    assert "line 3: not UTF-8 text" in str(refusal(GOOD.replace("ben", "béné").encode("latin-1")))
+NAMES = "who,x_m,count,on,mode\n# {0}\n{0},1.5,2,0,ON\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "encoding", "told"),
+    [
+        ("M\u00fcller", "utf-16", ""),
+        ("M\u00fcller", "utf-16-le", ""),
+        ("M\u00fcller", "utf-16-be", ""),
+        ("M\u00fcller", "utf-32", ""),
+        ("M\u00fcller", "utf-32-be", ""),
+        ("M\u00fcller", "utf-8-sig", ""),
+        ("M\u00fcller", "latin-1", "t.csv, line 2: not UTF-8; read as Windows-1252: 'M\u00fcller'"),
+        ("M\u00fcller", "cp1252", "save the file as UTF-8"),
+        ("\u674e\u56db", "gb2312", "read as GB2312: '\u674e\u56db' stands there"),
+        ("\u4f50\u85e4", "shift_jis", "read as Shift_JIS: '\u4f50\u85e4' stands there"),
+    ],
+)
+def test_every_encoding_is_read_and_guesses_are_told(name: str, encoding: str, told: str) -> None:
+    table = parse(NAMES.format(name).encode(encoding))
+    assert table.texts["who"] == [name]
+    assert table.numbers["x_m"].tolist() == [1.5]
+    assert told in "".join(map(str, table.notes))
+    assert bool(told) == bool(table.notes)
+
+
+def test_letters_of_utf_7_are_told() -> None:
+    (note,) = parse(NAMES.format("M\u00fcller").encode("utf-7")).notes
+    assert "line 2: '+APw-' may be a letter in UTF-7" in str(note)
+
+
+def test_what_is_no_text_is_refused_with_its_line() -> None:
+    assert "line 3: a zero byte, which is no text" in str(refusal(GOOD.replace("ben", "b\0n")))
+    cut = GOOD.encode("utf-16")[:-1]
+    assert "line 4: not UTF-16-LE, as it began" in str(refusal(cut))
+
+
+SIZES = Format(
+    "list",
+    "size",
+    (
+        Column("who", "text"),
+        Column("x_m"),
+        Column("y_m", needed=False),
+        Column("maybe_s", low=0.0, needed=False, blank=True),
+        Column("mode", "word", words=("OFF", "ON"), needed=False, coded=True),
+        Column("on", "flag", needed=False),
+    ),
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "x_m", "y_m"),
+    [
+        ("who;x_m;y_m\na;1,5;-0,25\nb;12,125;1e-3\n", [1.5, 12.125], [-0.25, 0.001]),
+        ("who\tx_m\ty_m\na\t1.5\t2\nb\t3\t4\n", [1.5, 3.0], [2.0, 4.0]),
+        ("who|x_m|y_m\na|1.5|2\nb|3|4\n", [1.5, 3.0], [2.0, 4.0]),
+        ('who,x_m,y_m\na,"1,5",2\nb,3,"4,25"\n', [1.5, 3.0], [2.0, 4.25]),
+        ('who,x_m,y_m\na,"1,234.5","1,000"\nb,3,4\n', [1234.5, 3.0], [1000.0, 4.0]),
+        ("who;x_m;y_m\na;1.234,5;1.000\nb;3;4\n", [1234.5, 3.0], [1000.0, 4.0]),
+        ("who;x_m;y_m\na;1.234.567;0,5\nb;3;4\n", [1234567.0, 3.0], [0.5, 4.0]),
+        ("who,x_m,y_m\na,1'234.5,12\u202f345\nb,3,4\n", [1234.5, 3.0], [12345.0, 4.0]),
+        ("who,x_m,y_m\na,\u22121.5,2\nb,3,4\n", [-1.5, 3.0], [2.0, 4.0]),
+        ("who;x_m;y_m\na;1,234;2\nb;3;4\n", [1.234, 3.0], [2.0, 4.0]),
+    ],
+)
+def test_numbers_of_all_countries(text: str, x_m: list[float], y_m: list[float]) -> None:
+    table = parse(text, SIZES)
+    assert table.numbers["x_m"].tolist() == x_m
+    assert table.numbers["y_m"].tolist() == y_m
+    assert ("is read as" in "".join(map(str, table.notes))) == ("," in text.split("\n", 1)[1] and (
+        ";" in text or '"' in text
+    ))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'who,x_m\na,"1,5"\nb,2.5\n',
+        'who,x_m\na,"1,234"\nb,2\n',
+        "who;x_m\na;1,234.5\nb;2,5\n",
+        'who,x_m\na,"1,23,4"\nb,2\n',
+    ],
+)
+def test_commas_that_may_mean_either_are_no_numbers(text: str) -> None:
+    assert "line 2, x_m" in str(refusal(text, SIZES)) or "line 3, x_m" in str(refusal(text, SIZES))
+
+
+@pytest.mark.parametrize("cell", ["", "NA", "n/a", "NaN", "null", "-99", "-999.0"])
+def test_what_stands_for_a_missing_number(cell: str) -> None:
+    table = parse(f"who,x_m,maybe_s\na,1,{cell}\nb,2,3\n", SIZES)
+    np.testing.assert_array_equal(table.numbers["maybe_s"], [np.nan, 3.0])
+    assert [str(note) for note in table.notes] == (
+        [f"t.csv, maybe_s: {cell} is read as missing, in 1 cells"] if "9" in cell else []
+    )
+    if "9" not in cell:
+        assert "line 2, who a, x_m" in str(
+            refusal(f"who,x_m\na,{cell}\n", replace(SIZES, key=("who",)))
+        )
+
+
+def test_codes_in_place_of_words_and_words_in_place_of_flags() -> None:
+    table = parse("who,x_m,mode,on\na,1,1,TRUE\nb,2,0.0,False\nc,3,ON,1\n", SIZES)
+    assert table.numbers["mode"].tolist() == [1.0, 0.0, 1.0]
+    assert table.numbers["on"].tolist() == [1.0, 0.0, 1.0]
+    assert "nor a code from 0 to 1" in str(refusal("who,x_m,mode\na,1,2\n", SIZES))
+
+
+def test_a_name_that_is_almost_known_is_read_or_told() -> None:
+    table = parse("Who,X m,y-m\na,1,2\n", SIZES)
+    assert table.numbers["y_m"].tolist() == [2.0]
+    assert "the column 'y-m' is read as y_m" in str(table.notes[-1])
+    table = parse("who,x_m,maybes_s\na,1,2\n", SIZES)
+    assert "maybe_s" not in table
+    assert "'maybes_s' is not known and passed over; is maybe_s meant?" in str(table.notes[0])
+
+
+def test_a_row_that_is_taken_for_a_comment_is_told() -> None:
+    table = parse("# made, by us\nwho,x_m\n#7,1\nb,2\n# the end\n", SIZES)
+    (note,) = table.notes
+    assert "t.csv, line 3: begins with # and is passed over, though it has 2 cells" in str(note)
 
 
 def test_a_range_open_to_one_side_is_told() -> None:
@@ -188,7 +308,7 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
 
 
 texts = (
-    hs.text(hs.characters(exclude_categories=["Cs"], exclude_characters="\r"), min_size=1)
+    hs.text(hs.characters(exclude_categories=["Cs"], exclude_characters="\r\0"), min_size=1)
     .map(str.strip)
     .filter(bool)
 )
@@ -249,8 +369,8 @@ def test_every_corruption_of_a_single_cell_is_found_where_it_is(
     row = data.draw(hs.integers(1, len(lines) - 1))
     at = data.draw(hs.integers(0, len(lines[0]) - 1))
     column = form.columns[at]
-    bad = [""] if column.kind == "text" else ["x", "1 2", "0x1", "1'5", "nan", "-inf", "1_0"]
-    bad += [] if column.blank else ["", " "]
+    bad = [""] if column.kind == "text" else ["x", "1 2", "0x1", "1'5", "-inf", "1_0"]
+    bad += [] if column.blank else ["", " "] + ["nan", "NA"] * (column.kind != "text")
     bad += ["2.5", "-0.5", "1e-9"] if column.kind in ("whole", "flag", "word") else []
     lines[row][at] = data.draw(hs.sampled_from(bad))
     lead = data.draw(hs.sampled_from(["", "# comment\n", "\n\n"]))

@@ -56,7 +56,10 @@ def test_columns_may_lack_be_more_and_come_in_any_order(tmp_path: Path) -> None:
         (f"{NEEDED}\n0,0,20,ACTIVE\n", "a.csv: 1 sample below the header"),
         (f"{NEEDED}\n{ROWS}0.3,6,20\n", "a.csv, line 5: 3 values for 4 columns"),
         (f"# c\n{NEEDED}\n{ROWS}0.3,6,fast,OFF\n", "line 6, speed_mps: 'fast' is not a number"),
-        (f"{NEEDED}\n{ROWS}0.3,6,,OFF\n", "a.csv, line 5, speed_mps: '' is not a number in m/s"),
+        (
+            f"{NEEDED}\n{ROWS}0.3,6,,OFF\n",
+            "a.csv, line 5, speed_mps: '' is not a number from -90 to 1000 in m/s",
+        ),
         (f"{NEEDED}\n{ROWS}0.3,inf,2,OFF\n", "a.csv, line 5, s_m: 'inf' is not a number in m"),
         (f"{NEEDED}\n{ROWS}0.3,6,2,ON\n", "line 5, mode: 'ON' is not one of OFF, STANDBY, ACTIVE"),
         (f"{NEEDED},eligible\n0,0,2,OFF,2\n", "line 2, eligible: '2' is not 0 or 1"),
@@ -93,3 +96,29 @@ def test_what_lacks_is_derived_from_the_road_and_the_profile() -> None:
     np.testing.assert_allclose(whole["acceleration_mps2"], 1.0)
     assert whole["base_mps"][0] == np.asarray(function.profile.base_mps)[0]
     assert not np.any(whole["set_speed_offset_mps"])
+
+
+def test_titles_that_are_almost_our_names_are_read_or_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(
+        "Time_S,s m,speed-mps,MODE,Gas_Pedal,brake_pedl\n0,0,20,2,0.5,1\n0.1,2,20,ACTIVE,0,0\n"
+    )
+    recording = read_recording(path)
+    assert recording["time_s"].tolist() == [0.0, 0.1]
+    assert recording["gas_pedal"].tolist() == [0.5, 0.0]
+    assert recording["mode"].tolist() == [ACTIVE, ACTIVE]
+    told = list(map(str, recording.notes))
+    assert f"{path}, gas_pedal: the column 'Gas_Pedal' is read as gas_pedal" in told
+    assert any("'brake_pedl' is not known and passed over; is brake_pedal meant" in t for t in told)
+
+
+@pytest.mark.parametrize("code", ["-99", "-999", "1e9", "inf"])
+@pytest.mark.parametrize("name", ["speed_mps", "set_speed_offset_mps", "brake_pedal"])
+def test_codes_for_missing_numbers_are_no_measurements(
+    tmp_path: Path, name: str, code: str
+) -> None:
+    path = tmp_path / "a.csv"
+    row = {"time_s": "0", "s_m": "0", "speed_mps": "20", "mode": "ACTIVE", name: code}
+    path.write_text(",".join(row) + "\n" + ",".join(row.values()) + "\n")
+    with pytest.raises(ModelError, match=f"line 2, {name}: '{code}' is not a number from -90"):
+        read_recording(path)

@@ -35,6 +35,45 @@ def test_a_prefix_or_default_namespace_does_not_matter(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("encoding", "declared"),
+    [
+        ("utf-8", "UTF-8"), ("utf-16", "UTF-16"), ("utf-16-le", "UTF-16"),
+        ("utf-16-be", "UTF-16BE"), ("utf-32", "UTF-32"), ("latin-1", "ISO-8859-1"),
+        ("gb2312", "GB2312"), ("gb18030", "GB18030"),
+        ("shift_jis", "Shift_JIS"), ("utf-8-sig", "GB2312"),
+    ],
+)  # fmt: skip
+def test_a_road_may_be_in_every_encoding_that_it_declares(
+    tmp_path: Path, encoding: str, declared: str
+) -> None:
+    name = {"gb2312": "\u9053\u8def", "gb18030": "\u9053\u8def", "shift_jis": "\u9053\u8def"}
+    named = name.get(encoding, "Stra\u00dfe")
+    path = tmp_path / "road.xodr"
+    text = f'<OpenDRIVE>\n<header name="{named}"/>\n{straight("1")}</OpenDRIVE>'
+    path.write_bytes(f'<?xml version="1.0" encoding="{declared}"?>\n{text}'.encode(encoding))
+    route = read_route(path)
+    assert (route.name, route.length_m) == (named, 100.0)
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b'<?xml version="1.0" encoding="u2f-8"?>', "line 1: unknown encoding 'u2f-8'; save the"),
+        (b'x\n<?xml version="1.0" encoding="UTF-8"?>\n<!--\xfc', "line 3: not UTF-8, which the"),
+        (b'<?xml version="1.0" encoding="GB2312"?>\n<!--\xfc', "line 2: not GB2312, which the"),
+        (b"\xff\xfe<\0O\0p\0e", "line 1: not UTF-16-LE, which the file"),
+    ],
+)
+def test_a_road_that_cannot_be_decoded_is_refused_with_its_line(
+    tmp_path: Path, data: bytes, message: str
+) -> None:
+    path = tmp_path / "road.xodr"
+    path.write_bytes(data)
+    with pytest.raises(ModelError, match=message):
+        read_route(path)
+
+
+@pytest.mark.parametrize(
     ("roads", "message"),
     [
         ("", "line 2: no <road> in this file"),

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from fnmatch import translate
+from math import inf
 from pathlib import Path
 from re import fullmatch
 from typing import Final, NamedTuple
@@ -21,6 +22,7 @@ from .columns import RECORDING
 from .inputs import Input, open_input
 from .mapping import RecordingMap, Source, plain, ready_maps, remembered_map
 from .stamps import CoarseStamps, seconds_of_dates
+from .titles import with_meant_names
 from .units import DATE_TIME, EPOCHS, to_ours, unit_named, units_of
 
 _LISTED_MAX: Final = 8
@@ -62,6 +64,7 @@ def read_columns(path: Path, mapping: RecordingMap | None) -> Columns:
     notes: list[Finding] = []
     if mapping is None:
         mapping = _recognised(file) or RecordingMap("")
+    mapping = with_meant_names(file, mapping, notes)
     found = _found(file, mapping)
     if mapping.name or any(_is_converted(column) for column in found):
         notes.append(_told(file, mapping, found))
@@ -193,6 +196,8 @@ def _format(found: list[Found], mapping: RecordingMap) -> Format:
         kind = "text" if as_text else one.ours.kind
         unit = "" if as_text else one.unit
         column = replace(one.ours, name=one.name, kind=kind, unit=unit, needed=True)
+        if _is_calculated(one):  # its range is that of the result
+            column = replace(column, low=-inf, high=inf)
         if one.plus:
             columns.setdefault(one.plus, replace(column, name=one.plus))
         if columns.setdefault(one.name, column).kind != kind:
@@ -231,14 +236,19 @@ def _numbers(table: Table, found: list[Found], mapping: RecordingMap) -> dict[st
             values = table.numbers[one.name]
             values = values + table.numbers[one.plus] if one.plus else values
             numbers[one.ours.name] = _calculated(values, one)
+            faults += _beyond(table, one, numbers[one.ours.name])
     table.refuse(faults)
     return numbers
 
 
-def _no_dates(table: Table, name: str, values: FloatArray) -> Iterator[Fault]:
-    for row in np.flatnonzero(~np.isfinite(values)).tolist():
-        text = f"{table.texts[name][row]!r} is no date and time such as 2026-05-01T12:00:00.250"
-        yield table.fault(row, name, text)
+def _is_calculated(one: Found) -> bool:
+    return bool(one.plus) or _is_converted(one) or (one.source.factor, one.source.add) != (1.0, 0.0)
+
+
+def _beyond(table: Table, one: Found, values: FloatArray) -> Iterator[Fault]:
+    """Yield where a calculated number is none that our column may hold."""
+    for row in np.flatnonzero(~one.ours.allows(values)).tolist():
+        yield table.fault(row, one.name, f"{values[row]:g} is not {one.ours.description}")
 
 
 def _constant(one: Found) -> float:

@@ -7,16 +7,19 @@ of a hundred thousand lines.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final
+from typing import AnyStr, Final
 from xml.parsers import expat
 
 from ..errors import ModelError
+from ..files.encodings import encoding_of
 
 # OpenDRIVE 1.8 is nine elements deep; tools put some of their own into userData.
 _DEPTH_MAX: Final = 64
+_DECLARED: Final = re.compile(rb"""<\?xml [^>]*?encoding\s*=\s*["']([\w.:-]+)""", re.ASCII)
 
 
 @dataclass(slots=True)
@@ -77,12 +80,11 @@ def parse_xml(data: bytes, root: str, path: Path) -> Element:
     Raises:
         ModelError: with file and line.
     """
-    start = _start(data, root.encode())
-    skipped_lines = data.count(b"\n", 0, start)
+    text, skipped_lines = _text(data, root, path)
     top = Element("", {}, 0)
     parser = _parser(top, skipped_lines, path)
     try:
-        parser.Parse(data[start:], True)
+        parser.Parse(text, True)  # a text is no longer in the encoding that it declares
     except expat.ExpatError as error:
         line = error.lineno + skipped_lines
         raise ModelError(
@@ -94,11 +96,36 @@ def parse_xml(data: bytes, root: str, path: Path) -> Element:
     return element
 
 
-def _start(data: bytes, root: bytes) -> int:
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):  # UTF-16, left to the parser
-        return 0
-    declaration = data.find(b"<?xml ")
-    return declaration if declaration >= 0 else max(data.find(b"<" + root), 0)
+def _text(data: bytes, root: str, path: Path) -> tuple[str, int]:
+    """Return the text from the XML declaration on, and how many lines were before it.
+
+    It is in the encoding that the bytes show, else in the one that they declare: the parser itself
+    knows four, and refuses those with several bytes per letter.
+    """
+    encoding, mark = encoding_of(data)
+    data = data.removeprefix(mark)
+    skipped = 0
+    if encoding == "utf-8":
+        start = _start(data, b"<?xml ", f"<{root}".encode())
+        skipped, data = data.count(b"\n", 0, start), data[start:]
+        declared = _DECLARED.match(data)
+        encoding = declared[1].decode() if declared and not mark else encoding
+    try:
+        text = data.decode(encoding)
+    except LookupError:
+        told = f"unknown encoding {encoding!r}; save the file as UTF-8, and declare that"
+        raise ModelError(f"{path}, line {skipped + 1}: {told}") from None
+    except UnicodeDecodeError as error:
+        line = skipped + data.count(b"\n", 0, error.start) + 1
+        told = f"not {encoding.upper()}, which the file seems to be; save it as UTF-8"
+        raise ModelError(f"{path}, line {line}: {told}") from None
+    start = _start(text, "<?xml ", f"<{root}")
+    return text[start:], skipped + text.count("\n", 0, start)
+
+
+def _start(data: AnyStr, declaration: AnyStr, root: AnyStr) -> int:
+    start = data.find(declaration)
+    return start if start >= 0 else max(data.find(root), 0)
 
 
 def _parser(top: Element, skipped_lines: int, path: Path) -> expat.XMLParserType:

@@ -1,6 +1,7 @@
 """Tables: CSV files with a header line, declared by their columns; one reader, one writer."""
 
 from .declared import Column, Fault, Format, TableError
+from .names import meant_names, misspelt
 from .reader import LeftOut, Table, parse_table, read_header, read_table
 from .writer import Cell, table_csv, write_table
 
@@ -12,6 +13,8 @@ __all__ = (
     "LeftOut",
     "Table",
     "TableError",
+    "meant_names",
+    "misspelt",
     "parse_table",
     "read_header",
     "read_table",

@@ -8,7 +8,11 @@ from math import inf
 from pathlib import Path
 from typing import Final, Literal, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ...errors import ModelError
+from ...kernel.arrays import FloatArray
 
 Kind = Literal["number", "whole", "flag", "word", "text"]
 
@@ -29,7 +33,9 @@ class Column:
         pattern: regular expression that a whole text must match.
         wanted: what a cell should be, for errors; empty: told from what stands above.
         needed: a table without this column is refused.
-        blank: a cell may be empty; it is read as NaN or as an empty text.
+        blank: a cell may be empty, or say NA, -99 and the like; it is read as NaN or, a text, as
+            it stands.
+        coded: a cell may hold the place of its word in place of the word.
     """
 
     name: str
@@ -42,6 +48,15 @@ class Column:
     wanted: str = ""
     needed: bool = True
     blank: bool = False
+    coded: bool = False
+
+    def allows(self, values: FloatArray) -> NDArray[np.bool_]:
+        """Tell which of these numbers the column may hold."""
+        low, high = (0.0, 1.0) if self.kind == "flag" else (self.low, self.high)
+        allowed: NDArray[np.bool_] = np.isfinite(values) & (values >= low) & (values <= high)
+        if self.kind in ("whole", "flag"):
+            allowed &= values == np.floor(values)
+        return allowed
 
     @property
     def description(self) -> str:
@@ -49,7 +64,8 @@ class Column:
         if self.wanted or self.kind == "text":
             return self.wanted or "a text"
         if self.kind == "word":
-            return f"one of {', '.join(self.words)}"
+            codes = f", nor a code from 0 to {len(self.words) - 1}" if self.coded else ""
+            return f"one of {', '.join(self.words)}{codes}"
         if self.kind == "flag":
             return "0 or 1"
         whole = "whole " if self.kind == "whole" else ""

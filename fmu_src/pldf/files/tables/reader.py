@@ -1,21 +1,20 @@
 """The reader of all tables.
 
-What every table may have: a byte order mark, any line ends, lines that begin with ``#``, empty
-lines, quoted cells (with commas and line breaks in them), blanks around cells, columns in any
-order.
+What every table may have: any encoding, separator and line ends (``text``, ``records``), decimal
+commas and thousands apart (``numbers``), lines that begin with ``#``, empty lines, quoted cells
+(with commas and line breaks in them), blanks around cells, columns in any order.
 
-Reading takes four steps, each a function: bytes to lines (``_lines``), lines to records
-(``_records``), the header (``_positions``), cells to values (``_convert``). All that is wrong with
-the cells is found before a file is refused.
+Reading takes four steps: bytes to text, text to records, the header (``_positions``), cells to
+values (``_convert``). All that is wrong with the cells is found before a file is refused. What is
+read otherwise than it stands there, and what was guessed, is in the notes.
 """
 
 from __future__ import annotations
 
-import csv
 import io
 import os
 import re
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from math import nan
@@ -23,12 +22,16 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...errors import ModelError
+from ...findings import Finding
 from ...kernel.arrays import FloatArray
 from ..disk import reason
 from .declared import Column, Fault, Format, TableError
+from .names import meant_names, misspelt
+from .numbers import MISSING, marks_of, numbers_of
+from .records import Comment, Record, cells_in, records, separator_of
+from .text import decoded
 from .writer import plain_text
 
 # Says of the cells of a row, by column, whether nothing of it is wanted.
@@ -36,6 +39,7 @@ LeftOut = Callable[[Mapping[str, str]], bool]
 
 _CELL_MAX: Final = 40  # characters of a wrong cell that an error repeats
 _HEADER_MAX: Final = 120  # the same for names of columns
+_FLAGS: Final = {"true": "1", "false": "0"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +54,7 @@ class Table:
         lines: line in which each row begins.
         numbers: columns of numbers, flags (0 or 1) and words (their places), float64.
         texts: columns of text, without blanks around.
+        notes: what was read otherwise than it stands there, or guessed.
     """
 
     path: Path
@@ -59,6 +64,7 @@ class Table:
     lines: list[int] = field(default_factory=list)
     numbers: dict[str, FloatArray] = field(default_factory=dict)
     texts: dict[str, list[str]] = field(default_factory=dict)
+    notes: list[Finding] = field(default_factory=list)
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -71,6 +77,10 @@ class Table:
         keys = (k for k in self.form.key if k != column and self.texts.get(k))
         place = [f"{key} {self.texts[key][row]}" for key in keys if self.texts[key][row]]
         return Fault(self.lines[row], ", ".join(filter(None, (*place, column))), text)
+
+    def note(self, line: int, place: str, text: str, consequence: str = "") -> None:
+        """Add a note."""
+        self.notes.append(Finding("note", str(self.path), line, place, text, consequence))
 
     def repeated(self, keys: Iterable[Hashable]) -> Iterator[tuple[int, int]]:
         """Yield each row whose key, one per row, an earlier one has, and the line of that one."""
@@ -110,11 +120,12 @@ def read_header(path: str | os.PathLike[str]) -> tuple[str, ...]:
         ModelError: the file cannot be read.
         TableError: it has no header.
     """
-    data = _content(path)
-    _, header = next(_records(_lines(data, Path(path)), Path(path), []), (0, []))
-    if not header:
-        raise TableError(Path(path), [Fault(0, "", "no header")])
-    return tuple(name.strip() for name in header)
+    path = Path(path)
+    lines, separator, _ = _lines(_content(path), path)
+    header = next(records(lines, path, separator, []), None)
+    if header is None:
+        raise TableError(path, [Fault(0, "", "no header")])
+    return tuple(name.strip() for name in header.cells)
 
 
 def _content(path: str | os.PathLike[str]) -> bytes:
@@ -126,23 +137,28 @@ def _content(path: str | os.PathLike[str]) -> bytes:
 
 def parse_table(data: bytes, path: Path, form: Format, left_out: LeftOut | None = None) -> Table:
     """Return the table that ``data``, the content of ``path``, holds; as ``read_table``."""
-    lines, comments = _lines(data, path), list[str]()
-    records = _records(lines, path, comments)
-    line, header = next(records, (0, []))
+    lines, separator, notes = _lines(data, path)
+    comments: list[Comment] = []
+    rows = records(lines, path, separator, comments)
+    line, header = next(rows, Record(0, []))
     if not line:
         raise TableError(path, [Fault(0, "", f"no header; {_has(form)}")])
-    table = Table(path, form, line, comments=tuple(comments))
+    table = Table(path, form, line, comments=tuple(one.text for one in comments), notes=notes)
     at = _positions(table, header)
-    if left_out or not (len(at) == len(header) and _fill_with_numbers(table, lines, at)):
-        body = list(records)
+    quick = not left_out and len(at) == len(header)
+    if not (quick and _fill_with_numbers(table, lines, separator, at)):
+        body = list(rows)
         if left_out:
-            body = [(line, row) for line, row in body if not left_out(_cells(row, at))]
-        _fill(table, body, at, len(header))
+            body = [record for record in body if not left_out(_cells(record.cells, at))]
+        _fill(table, body, separator, at, len(header))
+        _tell_rows_in_comments(table, comments, separator, len(header))
     table.refuse(_too_few(table))
     return table
 
 
-def _fill_with_numbers(table: Table, lines: Sequence[str], at: Mapping[str, int]) -> bool:
+def _fill_with_numbers(
+    table: Table, lines: Sequence[str], separator: str, at: Mapping[str, int]
+) -> bool:
     """Fill a table that holds nothing but numbers, in half the time; False if there is more to it.
 
     NumPy's parser takes nothing that ``_fill`` would refuse, and reads the same bits. Comments or
@@ -153,13 +169,13 @@ def _fill_with_numbers(table: Table, lines: Sequence[str], at: Mapping[str, int]
     if not body or body[0].isspace() or any(c.blank or c.kind in ("word", "text") for c in columns):
         return False
     try:
-        cells = np.loadtxt(body, delimiter=",", comments=None, ndmin=2)
+        cells = np.loadtxt(body, delimiter=separator, comments=None, ndmin=2)
     except ValueError:
         return False
     if cells.shape != (len(body), len(at)):
         return False
     values = {c.name: np.ascontiguousarray(cells[:, at[c.name]]) for c in columns}
-    if not all(_allowed(c, values[c.name]).all() for c in columns):
+    if not all(c.allows(values[c.name]).all() for c in columns):
         return False
     table.lines.extend(range(table.header_line + 1, len(lines) + 1))
     table.numbers.update(values)
@@ -167,7 +183,7 @@ def _fill_with_numbers(table: Table, lines: Sequence[str], at: Mapping[str, int]
 
 
 def _fill(
-    table: Table, body: Sequence[tuple[int, Sequence[str]]], at: Mapping[str, int], width: int
+    table: Table, body: Sequence[Record], separator: str, at: Mapping[str, int], width: int
 ) -> None:
     """Fill ``table`` with the records of ``body``; refuse it with all that is wrong with them."""
     ragged = [
@@ -175,11 +191,35 @@ def _fill(
         for line, row in body
         if len(row) != width
     ]
-    whole = [record for record in body if len(record[1]) == width]
-    table.lines.extend(line for line, _ in whole)
+    whole = [record for record in body if len(record.cells) == width]
+    table.lines.extend(record.line for record in whole)
     cells = list(zip(*(row for _, row in whole), strict=True)) or [()] * width
-    wrong = [_convert(table, c, cells[at[c.name]]) for c in table.form.columns if c.name in at]
+    columns = [column for column in table.form.columns if column.name in at]
+    numeric = (cells[at[c.name]] for c in columns if c.kind in ("number", "whole"))
+    decimal = _decimal_mark(table, list(chain(*numeric)), separator)
+    wrong = [_convert(table, c, cells[at[c.name]], decimal) for c in columns]
     table.refuse(chain(ragged, *wrong))
+
+
+def _decimal_mark(table: Table, cells: Sequence[str], separator: str) -> str:
+    marks = marks_of(cells, separator)
+    if marks.example and marks.decimal:
+        (value,) = numbers_of([marks.example], marks.decimal).tolist()
+        comma = "decimal commas" if marks.decimal == "," else "commas between thousands"
+        table.note(0, "", f"{comma}: {marks.example} is read as {value:.10g}")
+    return marks.decimal
+
+
+def _tell_rows_in_comments(
+    table: Table, comments: Sequence[Comment], separator: str, width: int
+) -> None:
+    """Tell of lines with # that have as many cells as a row: somebody may be called #7."""
+    rows = [c for c in comments if c.line > table.header_line and width > 1]
+    rows = [c for c in rows if cells_in(c.text, separator) == width]
+    if rows:
+        more = f" ({len(rows)} lines like it)" if len(rows) > 1 else ""
+        told = f"begins with # and is passed over, though it has {width} cells{more}"
+        table.note(rows[0].line, "", told, "it counts nowhere; quote its first cell if it should")
 
 
 def _too_few(table: Table) -> Iterator[Fault]:
@@ -194,59 +234,30 @@ def _has(form: Format) -> str:
     return f"a {form.name} has the columns {form.header}"
 
 
-def _lines(data: bytes, path: Path) -> list[str]:
-    try:
-        return list(io.StringIO(data.decode("utf-8-sig"), newline=None))
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        fault = Fault(line, "", "not UTF-8 text; save the file as UTF-8")
-        raise TableError(path, [fault]) from None
-
-
-def _records(
-    text: Sequence[str], path: Path, comments: list[str]
-) -> Iterator[tuple[int, list[str]]]:
-    """Yield the line in which a record begins and its cells; take the comments before the first.
-
-    A quoted cell may go on over lines: only between records is a line with # a comment.
-    """
-    begun = 0  # line in which the present record begins
-    count = 0
-
-    def lines() -> Iterator[str]:
-        nonlocal begun
-        for number, line in enumerate(text, start=1):
-            if not begun:
-                stripped = line.strip()
-                if not stripped or stripped[0] == "#":
-                    if stripped and not count:
-                        comments.append(stripped[1:].strip())
-                    continue
-                begun = number
-            yield line
-
-    records = csv.reader(lines(), skipinitialspace=True, strict=True)
-    try:
-        for cells in records:
-            yield begun, cells
-            begun, count = 0, count + 1
-    except csv.Error as error:
-        fault = Fault(begun, "", f'quotes that do not fit ({error}); write "" within quotes')
-        raise TableError(path, [fault]) from None
+def _lines(data: bytes, path: Path) -> tuple[list[str], str, list[Finding]]:
+    """Return the lines, what separates their cells, and what was guessed."""
+    text, notes = decoded(data, path)
+    lines = list(io.StringIO(text, newline=None))
+    return lines, separator_of(lines), notes
 
 
 def _positions(table: Table, header: Sequence[str]) -> dict[str, int]:
     """Return where each known column that is there stands."""
-    form, names = table.form, [name.strip() for name in header]
-    unknown = [name for name in names if name not in form.names] if form.closed else []
+    form = table.form
+    meant = meant_names([name.strip() for name in header], form.names)
+    for title, name in meant.items():
+        table.note(table.header_line, name, f"the column {title[:_CELL_MAX]!r} is read as {name}")
+    names = [meant.get(name.strip(), name.strip()) for name in header]
+    unknown = [name for name in names if name not in form.names]
     missing = [c.name for c in form.columns if c.needed and c.name not in names]
     twice = [name for name in form.names if names.count(name) > 1]
-    wrong = (("missing", missing), ("repeated", twice), ("unknown", unknown))
+    wrong = (("missing", missing), ("repeated", twice), ("unknown", unknown * form.closed))
     told = [f"{what} column {', '.join(which)[:_HEADER_MAX]}" for what, which in wrong if which]
-    if missing and len(names) == 1 and re.search("[;\t]", names[0]):
-        told.append(f"the header is {names[0][:_CELL_MAX]!r}, commas separate columns")
     if told:
         table.refuse([Fault(table.header_line, "", f"{'; '.join(told)}; {_has(form)}")])
+    for title, name in misspelt(unknown, [n for n in form.names if n not in names]).items():
+        told_ = f"the column {title[:_CELL_MAX]!r} is not known and passed over; is {name} meant?"
+        table.note(table.header_line, name, told_)
     return {name: names.index(name) for name in form.names if name in names}
 
 
@@ -254,54 +265,48 @@ def _cells(row: Sequence[str], at: Mapping[str, int]) -> dict[str, str]:
     return {name: row[place].strip() if place < len(row) else "" for name, place in at.items()}
 
 
-def _convert(table: Table, column: Column, cells: Sequence[str]) -> list[Fault]:
+def _convert(table: Table, column: Column, cells: Sequence[str], decimal: str) -> list[Fault]:
     """Put a column into ``table``; return the cells that are not what they should be."""
     if column.kind == "text":
         texts = table.texts[column.name] = [plain_text(cell).strip() for cell in cells]
         fits = re.compile(column.pattern or r"(?s:.+)").fullmatch
         wrong = [row for row, text in enumerate(texts) if not fits(text)]
+        missing: Collection[str] = ("",)
     else:
-        values = _codes(column, cells) if column.kind == "word" else _numbers(cells)
-        table.numbers[column.name] = values
-        wrong = np.flatnonzero(~_allowed(column, values)).tolist()
+        missing = MISSING if column.blank else ()
+        values = table.numbers[column.name] = _values(column, cells, decimal, missing)
+        wrong = np.flatnonzero(~column.allows(values)).tolist()
+        _tell_codes(table, column, [cells[row].strip() for row in wrong])
     return [
         table.fault(row, column.name, f"{cell[:_CELL_MAX]!r} is not {column.description}")
         for row, cell in ((row, cells[row].strip()) for row in wrong)
-        if cell or not column.blank
+        if not (column.blank and cell.lower() in missing)
     ]
 
 
-def _codes(column: Column, cells: Sequence[str]) -> FloatArray:
-    """Return the places of the words in ``cells``, NaN for others."""
-    places = {word: float(place) for place, word in enumerate(column.words)}
-    return np.array([places.get(cell.strip(), nan) for cell in cells], dtype=np.float64)
+def _values(
+    column: Column, cells: Sequence[str], decimal: str, missing: Collection[str]
+) -> FloatArray:
+    """Return the values of ``cells``: numbers, flags, or places of words; NaN for others."""
+    if column.kind == "word":
+        places = {word: float(place) for place, word in enumerate(column.words)}
+        codes = np.array([places.get(cell.strip(), nan) for cell in cells], dtype=np.float64)
+        if column.coded and np.isnan(codes).any():
+            numbers = numbers_of(cells, decimal)
+            known = np.isin(numbers, range(len(column.words)))
+            codes = np.where(np.isnan(codes) & known, numbers, codes)
+        return codes
+    if column.kind == "flag":
+        cells = [_FLAGS.get(cell.strip().lower(), cell) for cell in cells]
+    values = numbers_of(cells, decimal)
+    if missing:
+        values[[cell.strip().lower() in missing for cell in cells]] = nan
+    return values
 
 
-def _numbers(cells: Sequence[str]) -> FloatArray:
-    """Return the numbers in ``cells``, NaN where there is none."""
-    try:
-        if _is_plain("".join(cells)):
-            return np.fromiter(map(float, cells), np.float64, len(cells))
-    except ValueError:
-        pass  # the slow way finds out where
-    return np.array([_number(cell) for cell in cells], dtype=np.float64)
-
-
-def _number(cell: str) -> float:
-    try:
-        return float(cell) if _is_plain(cell.strip()) else nan
-    except ValueError:
-        return nan
-
-
-def _is_plain(text: str) -> bool:
-    """Tell whether ``text`` has nothing that only Python takes for a number: 1_000, Thai digits."""
-    return "_" not in text and text.isascii()
-
-
-def _allowed(column: Column, values: FloatArray) -> NDArray[np.bool_]:
-    low, high = (0.0, 1.0) if column.kind == "flag" else (column.low, column.high)
-    allowed: NDArray[np.bool_] = np.isfinite(values) & (values >= low) & (values <= high)
-    if column.kind in ("whole", "flag"):
-        allowed &= values == np.floor(values)
-    return allowed
+def _tell_codes(table: Table, column: Column, cells: Sequence[str]) -> None:
+    """Tell of numbers that were taken for missing ones."""
+    codes = [cell for cell in cells if column.blank and cell[:1] == "-" and cell in MISSING]
+    if codes:
+        told = f"{codes[0]} is read as missing, in {len(codes)} cells"
+        table.note(0, column.name, told)

@@ -1,0 +1,27 @@
+"""Columns of a recording whose titles are almost our names."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..files.tables import meant_names, misspelt
+from ..findings import Finding
+from .columns import RECORDING
+from .inputs import Input
+from .mapping import RecordingMap, Source
+
+
+def with_meant_names(file: Input, mapping: RecordingMap, notes: list[Finding]) -> RecordingMap:
+    """Return ``mapping`` with titles that are our names but for capitals; tell what is alike."""
+    ours = [column.name for column in RECORDING.columns if column.name not in mapping.columns]
+    meant = meant_names(file.names, ours)
+    for title, name in meant.items():
+        text = f"the column {title!r} is read as {name}"
+        notes.append(Finding("note", str(file.path), 0, name, text))
+    absent = [name for name in ours if name not in file.names and name not in meant.values()]
+    others = [name for name in file.names if name not in meant and name not in RECORDING.names]
+    for title, name in misspelt(others, absent).items():
+        text = f"the column {title!r} is not known and passed over; is {name} meant?"
+        notes.append(Finding("warning", str(file.path), 0, name, text))
+    sources = {name: Source(0, (title,)) for title, name in meant.items()}
+    return replace(mapping, columns={**mapping.columns, **sources})
