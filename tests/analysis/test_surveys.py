@@ -11,6 +11,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from pldf.analysis.analysis import analyse
 from pldf.analysis.questionnaires import (
     LAAN,
     PROFILE,
@@ -98,6 +99,8 @@ def test_a_study_with_an_export_and_its_map(
         for pedal in [0.1 * int(who[2]) + 0.05 * (phase[0] == "A")]
     ]
     (tmp_path / "drives.csv").write_text("\n".join((*lines, "")))
+    with pytest.raises(ModelError, match=r"qualtrics.csv: no such file; the mapping file names it"):
+        analyse(StudyFolder(tmp_path, map=read_map(SURVEYS / "qualtrics.toml")))
     shutil.copy(SURVEYS / "qualtrics.csv", tmp_path)
     assert main(["analyse", str(tmp_path), "--map", str(SURVEYS / "qualtrics.toml")]) == 0
     said = capsys.readouterr()

@@ -22,7 +22,7 @@ from .drives_table import missing, repeated
 from .exclusions import Exclusion
 from .gathered import Gathered, Reading, gather
 from .problems import StudyError, findings_of
-from .questionnaires import Questionnaire, read_questionnaire
+from .questionnaires import Questionnaire, SurveyMap, read_questionnaire
 from .rounding import as_written
 from .statistics import Comparison, MeanInterval, compare, mean_interval
 from .study_folder import SYSTEMS, StudyFolder
@@ -227,6 +227,11 @@ def _questionnaire(
     """
     path = study.questionnaire
     if not path.exists():
+        if study.survey.file != SurveyMap().file:
+            raise ModelError(
+                f"{path}: no such file; the mapping file names it ([questionnaire] file); put the "
+                "export there or correct its name"
+            )
         return None
 
     def left_out(participant: str, phase: str) -> bool:
