@@ -182,6 +182,19 @@ def test_an_empty_row_is_passed_over_and_told(tmp_path: Path) -> None:
     assert set(found.items["laan_1"]) == {("P1", "A")}
 
 
+def test_a_table_from_a_german_spreadsheet(tmp_path: Path) -> None:
+    """Semicolons, boxes with a decimal comma, cp1252; that the encoding was guessed is told."""
+    rows = [";".join(("P1", "A", *(f"{box},0" for box in BOXES)))]
+    rows += [";".join(("P2", "A", *map(str, BOXES[:4]), "überflüssig", *map(str, BOXES[5:])))]
+    text = "\r\n".join((f"participant;system;{';'.join(LAAN)}", *rows, ""))
+    path = tmp_path / "questionnaire.csv"
+    path.write_bytes(text.encode("cp1252"))
+    found = read_questionnaire(path)
+    for name in ("P1", "P2"):
+        assert tuple(found.items[item][name, "A"] for item in LAAN) == SCORES
+    assert any("cp1252" in note.text or "1252" in note.text for note in found.notes)
+
+
 def test_a_questionnaire_without_answers_is_told(tmp_path: Path) -> None:
     for text in (laan({}), laan({"P1,A": ("",) * 9})):
         found = read(tmp_path, text)

@@ -25,7 +25,7 @@ from pldf.errors import ModelError
 from pldf.recordings.mapping import read_map
 
 SURVEYS = Path(__file__).parents[2] / "examples" / "surveys"
-TOOLS = ("qualtrics", "redcap", "redcap_labels")
+TOOLS = ("limesurvey", "qualtrics", "soscisurvey", "redcap", "redcap_labels")
 # Boxes as ticked on the screen: laan_1 to laan_9, profile_1 to profile_6.
 TICKED = {
     ("P01", "A"): "333234324 332343", ("P01", "B"): "214122243 515514",

@@ -105,7 +105,7 @@ def read_sheet(
             if not left_out(one.participant, one.group if len(one.group) > 1 else "")
         ],
         [scale for scale, items in SCALES.items() if asked.issuperset(items)],
-        [*_notes(table, heading, len(counted), len(rows)), *told],
+        [*table.notes, *_notes(table, heading, len(counted), len(rows)), *told],
     )
 
 
