@@ -85,6 +85,18 @@ def test_a_hole_is_told_with_time_and_length(made: DrivingFunction) -> None:
     assert lost.hole_s == pytest.approx(2.0, abs=0.04)
 
 
+def test_what_was_left_out_of_a_lesson_is_told(made: DrivingFunction) -> None:
+    """10 m recorded where learning was not allowed: there, and where stretching took them to."""
+    pedal = made.outcomes().pedals[0]
+    assert made.learned is not None
+    inside = slice(int(pedal.learned_from_m), int(pedal.learned_to_m) + 1)
+    assert pedal.barred_m == np.count_nonzero(made.learned.lessons[inside] == 0.0) > 10
+    assert f"but for {pedal.barred_m:.0f} m where learning was not allowed" in lines(made)[0]
+    series = made.outcomes().set_speeds[1]
+    offsets = made.learned.offset_mps[int(series.from_m) : int(series.to_m)]
+    assert series.barred_m == np.count_nonzero(offsets == 0.0) > 10
+
+
 places = hs.lists(hs.floats(5.0, 990.0), min_size=2, max_size=12, unique=True).map(sorted)
 
 

@@ -46,6 +46,7 @@ TEXTS: Final = {
     "TRUNCATED": "(not over when the drive ended) ",
     "NOT_MOVED": NOT_LEARNED + "the car did not move",
     "LEARNED": "learned from %d to %d m, on average %s km/h, at most %s km/h",
+    "BARRED": ", but for %d m where learning was not allowed",
     "HOLE": NOT_LEARNED + "a hole of %s s in the recording costs %d m",
     "STOP": NOT_LEARNED + "the car was slower than %d km/h, a situation, not a wish",
     "NOT_ELIGIBLE": NOT_LEARNED + "learning was not allowed there",
@@ -96,6 +97,7 @@ class PedalOutcome(NamedTuple):
         learned_from_m, learned_to_m: the first and the last of them.
         mean_change_mps, largest_change_mps: of these nodes, against the profile driven.
         hole_s, hole_m: time and length of the holes that touch it.
+        barred_m: how much of it, stretched, lies where learning was not allowed.
         holds: bounds that cut its lesson.
     """
 
@@ -111,6 +113,7 @@ class PedalOutcome(NamedTuple):
     largest_change_mps: float
     hole_s: float
     hole_m: float
+    barred_m: float
     holds: tuple[Hold, ...]
 
 
@@ -122,6 +125,7 @@ class SetSpeedOutcome(NamedTuple):
         wish_mps: offset from the legal limit that the driver set.
         offset_mps: what was adopted of it.
         outcome: OUTCOME in ``kernel.codes``.
+        barred_m: how much of it lies where learning was not allowed, which takes no offset.
     """
 
     from_m: float
@@ -129,6 +133,7 @@ class SetSpeedOutcome(NamedTuple):
     wish_mps: float
     offset_mps: float
     outcome: int
+    barred_m: float
 
     @property
     def is_cut(self) -> bool:
@@ -174,6 +179,7 @@ class Outcomes(NamedTuple):
                 signed(KMH_PER_MPS * pedal.mean_change_mps),
                 signed(KMH_PER_MPS * pedal.largest_change_mps),
             )
+            told += barred_words(pedal.barred_m)
             return TEXTS["SEPARATOR"].join([told, *_first(told_holds(pedal.holds))])
         if pedal.outcome == OUTCOME_HOLE:
             return told + TEXTS["HOLE"] % (tenths(pedal.hole_s), whole(pedal.hole_m))
@@ -225,6 +231,7 @@ def _pedal(
         largest_change_mps=following.largest_change_mps[k],
         hole_s=following.hole_s[k],
         hole_m=following.hole_m[k],
+        barred_m=following.barred_m[k],
         holds=holds,
     )
 
@@ -236,6 +243,7 @@ def _set_speed(following: NextArrays, k: int) -> SetSpeedOutcome:
         following.set_wish_mps[k],
         following.set_offset_mps[k],
         int(following.set_outcome[k]),
+        following.set_barred_m[k],
     )
 
 
@@ -247,9 +255,13 @@ def set_speed_words(series: SetSpeedOutcome) -> str:
         return TEXTS["SET_TAKEN_BACK"]
     if series.outcome == OUTCOME_NOT_ELIGIBLE:
         return TEXTS["SET_NOT_ELIGIBLE"] % wish
-    if series.is_cut:
-        return TEXTS["SET_CUT"] % (offset, wish)
-    return TEXTS["SET_LEARNED"] % offset
+    told = TEXTS["SET_CUT"] % (offset, wish) if series.is_cut else TEXTS["SET_LEARNED"] % offset
+    return told + barred_words(series.barred_m)
+
+
+def barred_words(metres: float) -> str:
+    """Return what of a lesson was left out; empty if nothing was."""
+    return TEXTS["BARRED"] % whole(metres) if metres > 0.0 else ""
 
 
 def told_holds(holds: Iterable[Hold]) -> list[str]:

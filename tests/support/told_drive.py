@@ -63,7 +63,7 @@ def told_drive() -> Iterator[tuple[float, float, Inputs]]:
                 "lever_resume": 0.3 < time_s < 0.5 or 20 <= standing < 25,
                 "lever_up_long": any(_tip(s_m, at) for at in presses),
                 "lever_down_long": _tip(s_m, 730.0),
-                "eligible": not 2500.0 <= s_m < 2800.0,
+                "eligible": not (2500.0 <= s_m < 2800.0 or 440.0 <= s_m < 450.0),
             },
         )
         s_m += speed * step_s

@@ -110,6 +110,8 @@ class NextArrays(NamedTuple):
     largest_change_mps: Floats  # pedal intervention k: the same; with its sign
     hole_s: Floats  # pedal intervention k: time of the holes that cost it
     hole_m: Floats  # pedal intervention k: length of the holes that cost it
+    barred_m: Floats  # pedal intervention k: how much of it lies where learning was not allowed
+    set_barred_m: Floats  # series k: how much of it lies where learning was not allowed
     hold_bound: Floats  # hold k, a run of nodes cut by one bound: which (BOUND in codes)
     hold_intervention: Floats  # hold k: of which intervention's lesson, 0 = set speed
     hold_from_m: Floats  # hold k: its first node

@@ -6,7 +6,7 @@ from .arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays
 from .codes import OUTCOME_NOT_MOVED
 from .interpolation import cell_at
 from .state import PldfState
-from .stretch import stretch_factor, stretched_position
+from .stretch import source_position, stretch_factor, stretched_position
 
 
 def tell_outcomes(
@@ -29,26 +29,34 @@ def tell_outcomes(
         following.largest_change_mps[k] = 0.0
         following.hole_s[k] = 0.0
         following.hole_m[k] = 0.0
+        following.barred_m[k] = 0.0
         if following.outcome[k] != OUTCOME_NOT_MOVED:
-            _measure_hole(st, route, trace, following, k)
+            alpha = stretch_factor(st, route, trace, k)
+            _measure_holes(st, trace, following, k, alpha)
+            _count_barred(st, trace, following, k, alpha)
+    for k in range(st.set_series):
+        _count_barred_by_lever(st, trace, following, k)
     _sum_changes(st, profile, following)
     _find_holds(st, following)
 
 
-def _measure_hole(
-    st: PldfState, route: RouteArrays, trace: TraceArrays, following: NextArrays, k: int
+def _ends_of_piece(st: PldfState, trace: TraceArrays, k: int, alpha: float) -> tuple[int, int]:
+    """Return the first and the last node that the stretched piece of intervention ``k`` touches."""
+    nodes = len(trace.gap)
+    start = stretched_position(trace.start_m[k], trace.end_m[k], alpha)
+    first = max(cell_at(nodes, start), st.first_node)
+    return first, min(cell_at(nodes, trace.end_m[k]), st.first_node + st.nodes - 1)
+
+
+def _measure_holes(
+    st: PldfState, trace: TraceArrays, following: NextArrays, k: int, alpha: float
 ) -> None:
     """Measure the holes that touch the stretched piece of intervention ``k``, in s and m.
 
     The samples around a hole are not known, only the nodes: each up to a metre before them.
     """
-    nodes = len(trace.gap)
-    start = stretched_position(
-        trace.start_m[k], trace.end_m[k], stretch_factor(st, route, trace, k)
-    )
     end = st.first_node + st.nodes - 1
-    i = max(cell_at(nodes, start), st.first_node)
-    last = min(cell_at(nodes, trace.end_m[k]), end)
+    i, last = _ends_of_piece(st, trace, k, alpha)
     while i > st.first_node and trace.gap[i] > 0.0 and trace.gap[i - 1] > 0.0:
         i -= 1
     while i <= last or (i <= end and trace.gap[i] > 0.0):
@@ -56,6 +64,30 @@ def _measure_hole(
             following.hole_m[k] += 1.0
             following.hole_s[k] += trace.time_s[i] - trace.time_s[max(i - 1, st.first_node)]
         i += 1
+
+
+def _count_barred(
+    st: PldfState, trace: TraceArrays, following: NextArrays, k: int, alpha: float
+) -> None:
+    """Count the nodes of the stretched piece where learning was not allowed, there or recorded."""
+    end = st.first_node + st.nodes - 1
+    first, last = _ends_of_piece(st, trace, k, alpha)
+    for i in range(first, last + 1):
+        recorded = min(source_position(float(i), trace.end_m[k], alpha), float(end))
+        eligible = trace.eligible[cell_at(len(trace.gap), recorded)]
+        if min(trace.eligible[i], eligible) <= 0.0:
+            following.barred_m[k] += 1.0
+
+
+def _count_barred_by_lever(
+    st: PldfState, trace: TraceArrays, following: NextArrays, k: int
+) -> None:
+    """Count the recorded cells of series ``k`` where learning was not allowed."""
+    following.set_barred_m[k] = 0.0
+    behind = min(int(following.set_to_m[k]), st.first_node + st.nodes)
+    for cell in range(max(int(following.set_from_m[k]), st.first_node), behind):
+        if trace.eligible[cell] <= 0.0:
+            following.set_barred_m[k] += 1.0
 
 
 def _sum_changes(st: PldfState, profile: ProfileArrays, following: NextArrays) -> None:

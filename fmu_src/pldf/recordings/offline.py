@@ -166,7 +166,13 @@ def _explain_pedal(learned: Learned, outcomes: Outcomes, pedal: PedalOutcome) ->
         entry["stretch_factor"] = alpha
         entry["stretched_start_m"] = stretched_position(pedal.start_m, pedal.end_m, alpha)
     if pedal.outcome == OUTCOME_LEARNED:
-        for name in ("learned_from_m", "learned_to_m", "mean_change_mps", "largest_change_mps"):
+        for name in (
+            "learned_from_m",
+            "learned_to_m",
+            "mean_change_mps",
+            "largest_change_mps",
+            "barred_m",
+        ):
             entry[name] = getattr(pedal, name)
         entry["held"] = [_explain_hold(hold) for hold in pedal.holds]
     else:
@@ -182,6 +188,7 @@ def _explain_set_speed(series: SetSpeedOutcome) -> dict[str, Any]:
         "to_m": series.to_m,
         "wish_mps": series.wish_mps,
         "offset_mps": series.offset_mps,
+        "barred_m": series.barred_m,
         "outcome": OUTCOME.items[series.outcome].lower(),
         "told": set_speed_words(series),
         "held_by": BOUND.items[BOUND_LEGAL_LIMIT].lower() if series.is_cut else None,

@@ -75,6 +75,10 @@ static int add_holds(Line *line, const State *state, const Run *run, int64_t int
     return found;
 }
 
+static void add_barred(Line *line, double metres) {
+    if (metres > 0.0) add(line, TEXT_BARRED, whole(metres));
+}
+
 static void add_pedal(Line *line, const State *state, const Run *run, int64_t k) {
     const Learning *l = model.learning;
     add(line, TEXT_PEDAL, (int)k + 1, whole(TRACE(START_M)), whole(TRACE(END_M)));
@@ -84,6 +88,7 @@ static void add_pedal(Line *line, const State *state, const Run *run, int64_t k)
     case OUTCOME_LEARNED:
         add(line, TEXT_LEARNED, whole(NEXT(TAUGHT_FROM_M)), whole(NEXT(TAUGHT_TO_M)),
             signed_kmh(NEXT(MEAN_CHANGE_MPS)).text, signed_kmh(NEXT(LARGEST_CHANGE_MPS)).text);
+        add_barred(line, NEXT(BARRED_M));
         add_holds(line, state, run, k + 1);
         break;
     case OUTCOME_HOLE: add(line, TEXT_HOLE, tenths("", NEXT(HOLE_S)).text, whole(NEXT(HOLE_M))); break;
@@ -99,9 +104,12 @@ static void add_set_speed(Line *line, const State *state, const Run *run, int64_
     if ((int)NEXT(SET_OUTCOME) == OUTCOME_TAKEN_BACK) add(line, TEXT_SET_TAKEN_BACK);
     else if ((int)NEXT(SET_OUTCOME) == OUTCOME_NOT_ELIGIBLE)
         add(line, TEXT_SET_NOT_ELIGIBLE, signed_kmh(wish).text);
-    else if (offset < wish - SAME_OFFSET_MPS)
-        add(line, TEXT_SET_CUT, signed_kmh(offset).text, signed_kmh(wish).text);
-    else add(line, TEXT_SET_LEARNED, signed_kmh(offset).text);
+    else {
+        if (offset < wish - SAME_OFFSET_MPS)
+            add(line, TEXT_SET_CUT, signed_kmh(offset).text, signed_kmh(wish).text);
+        else add(line, TEXT_SET_LEARNED, signed_kmh(offset).text);
+        add_barred(line, NEXT(SET_BARRED_M));
+    }
 }
 
 void outcome_tell(const Importer *importer, const State *state, const Run *run) {
