@@ -61,14 +61,18 @@ def learn(
         The profile for the next drive in ``.profile``, what is new in it in ``.iteration``.
 
     Raises:
-        ModelError: the recording is not on the route, the profile belongs to another route, or
-            there is no such parameter or value.
+        ModelError: the recording is not on the route or contradicts itself, the profile
+            belongs to another route, or there is no such parameter or value.
     """
     from .function import DrivingFunction
+    from .recordings.contradictions import require_sound
     from .recordings.offline import learn_from
 
     function = DrivingFunction()
     set_parameters(function.record, parameters or {})
+    function.prepare(route)  # refuses parameters out of their range
+    for finding in require_sound(recording, "recording", function.route):
+        warnings.warn(str(finding), stacklevel=2)
     return learn_from(recording, route, profile, function)
 
 
@@ -202,9 +206,9 @@ def analyse(
     Raises:
         ModelError: a file cannot be used, or there are too few participants.
     """
-    from .analysis import analysis, study_folder
+    from .analysis import checks, study_folder
 
     learned = None if profiles is None else Path(profiles)
-    return analysis.analyse(
+    return checks.analysed(
         study_folder.StudyFolder(Path(folder), route, frozenset(without), profiles=learned)
-    )
+    )[0]

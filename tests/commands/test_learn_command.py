@@ -6,16 +6,19 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from pldf import cli
 from pldf.commands import learn
 from pldf.profiles.store import continue_profile, read_profile, rollback_profile
-from pldf.recordings.recording import write_recording
+from pldf.recordings.recording import Recording, write_recording
 from profile_examples import drive_result
 from sample_recording import sample_recording
 from told_drive import driven, told_recording, write_road
 
 Run = Callable[..., tuple[int, str]]
+
+ROAD = "s_m,curvature_per_m,speed_limit_mps\n0,0,25\n2000,0,25\n"
 
 
 @pytest.fixture
@@ -24,9 +27,10 @@ def run(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.
     monkeypatch.chdir(tmp_path)
     recording = tmp_path / "recording.csv"
     write_recording(recording, sample_recording())
+    Path("road.csv").write_text(ROAD, encoding="utf-8")
 
     def runner(*arguments: str) -> tuple[int, str]:
-        given = ["--route", "study", "--recording", str(recording), *arguments]
+        given = ["--route", "road.csv", "--recording", str(recording), *arguments]
         status = cli.main(["learn", *given])
         return status, capsys.readouterr().err
 
@@ -133,3 +137,22 @@ def test_the_same_result_may_be_written_again(run: Run) -> None:
     before = Path("a.pldf").read_bytes()
     assert run("--out", "a.pldf") == (0, "")
     assert Path("a.pldf").read_bytes() == before
+
+
+def test_a_recording_that_contradicts_itself_is_refused_with_all_of_it(run: Run) -> None:
+    columns = sample_recording().columns
+    wrong = {name: 3.6 * columns[name] for name in ("speed_mps", "set_speed_mps")}
+    write_recording("recording.csv", Recording({**columns, **wrong}))
+    status, said = run("--out", "a.pldf")
+    assert status == 1
+    assert "speed_mps in km/h?" in said and "set_speed_mps in km/h?" in said
+    assert not Path("a.pldf").exists()
+
+
+def test_a_recording_with_a_warning_is_learned_and_it_is_told(run: Run) -> None:
+    rows = np.r_[0:400, 430:1000]
+    columns = {name: values[rows] for name, values in sample_recording().columns.items()}
+    write_recording("recording.csv", Recording(columns))
+    status, said = run("--out", "a.pldf")
+    assert status == 0
+    assert "warning: " in said and "3.1 s at 39.9 s (798 to 860 m)" in said

@@ -362,3 +362,10 @@ def test_pedals_that_contradict_the_mode_or_their_range(kind: str) -> None:
     finding = only(change(driven()))
     assert finding.severity == "warning"
     assert text in finding.text
+
+
+def test_a_recording_made_in_python_may_lack_what_no_file_does() -> None:
+    columns = driven()
+    del columns["mode"]
+    assert found(columns)[0].text == "missing column mode"
+    assert found({name: values[:1] for name, values in driven().items()})[0].text == "1 samples"

@@ -11,8 +11,9 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from ..analysis.analysis import RATES, Analysis, analyse
+from ..analysis.analysis import RATES, Analysis
 from ..analysis.analysis_tables import write_tables
+from ..analysis.checks import Checks, analysed
 from ..analysis.published import DRIVERS, TESTS, published_means
 from ..analysis.questionnaires import SCALES, Questionnaire
 from ..analysis.study_folder import StudyFolder
@@ -83,7 +84,9 @@ def run(options: argparse.Namespace) -> None:
     remember_map(options, options.folder)
     with progress_bar("read", 1.0, "recordings") as bar:  # analyse tells how many there are
         task = bar.task_ids[0]
-        analysis = analyse(study, lambda done, all_: bar.update(task, completed=done, total=all_))
+        analysis, checks = analysed(
+            study, lambda done, all_: bar.update(task, completed=done, total=all_)
+        )
     answers = analysis.questionnaire.notes if analysis.questionnaire else ()
     tell(n for n in analysis.notes if n.severity == "warning" or n not in answers)
     written = write_tables(analysis, options.out or options.folder / "analysis")
@@ -93,15 +96,17 @@ def run(options: argparse.Namespace) -> None:
     for line in _remarks(analysis):
         console.print(line, highlight=False)
     if options.report or options.figures:
-        _show(analysis, study, options)
+        _show(analysis, study, checks, options)
     print(f"Tables: {', '.join(path.name for path in written)} in {written[0].parent}.")
 
 
-def _show(analysis: Analysis, study: StudyFolder, options: argparse.Namespace) -> None:
+def _show(
+    analysis: Analysis, study: StudyFolder, checks: Checks, options: argparse.Namespace
+) -> None:
     """Write report and figures, as far as they are wanted."""
     from ..report.contents import collect  # noqa: PLC0415 - slow to import
 
-    contents = collect(analysis, study, options.driver)
+    contents = collect(analysis, study, options.driver, checks)
     if options.report:
         from ..report.page import write_report  # noqa: PLC0415
 

@@ -16,8 +16,10 @@ from ..profiles.store import (
     require_continued,
     write_profile,
 )
+from ..recordings.contradictions import require_sound
 from ..recordings.offline import Learned, explain, learn_from
 from ..recordings.recording import read_recording
+from ..roads import route_arrays
 from .shared.mapping import add_map, chosen_map, tell
 from .shared.road import add_road, required_road
 from .shared.settings import add_settings, apply_settings
@@ -71,6 +73,7 @@ def run(options: argparse.Namespace) -> None:
     present = None if options.force else present_profile(options.out)
     recording = read_recording(options.recording, mapping)
     tell(recording.notes)
+    tell(require_sound(recording, options.recording, route_arrays(route)))
     learned = learn_from(recording, route, stored, function)
     _write(options, learned.profile, present)
     report = explain(learned)

@@ -13,10 +13,12 @@ from typing import Final
 
 import numpy as np
 
+from ..errors import ModelError
 from ..findings import Finding, Severity
 from ..kernel.arrays import RouteArrays
 from ..kernel.codes import ACTIVE, GAS_OVERRIDE, MODE
 from . import against_road, frozen, unit_doubts
+from .columns import RECORDING
 from .interventions import PRESSED
 from .quality import HOLE_S, Hole, holes
 from .recording import Recording
@@ -42,8 +44,9 @@ def contradictions(
         route: the road it was driven on; None: not known, and nothing is said about it.
     """
     file = str(path)
-    if unusable := list(_not_numbers(recording, file)) or list(_time_order(recording, file)):
-        return unusable
+    for check in (_missing, _not_numbers, _time_order):
+        if unusable := list(check(recording, file)):
+            return unusable
     found = [*unit_doubts.unit_doubts(recording, file, route)]
     scales_fit = not any(finding.severity == "error" for finding in found)
     if route is not None:
@@ -53,6 +56,31 @@ def contradictions(
         found += [*_standing(recording, file), *_holes(recording, file)]
     found += [*_never_active(recording, file), *_pedals(recording, file)]
     return sorted(found, key=lambda finding: finding.severity != "error")
+
+
+def require_sound(
+    recording: Recording, path: str | Path, route: RouteArrays | None
+) -> list[Finding]:
+    """Return the warnings among the contradictions.
+
+    Raises:
+        ModelError: there are errors; with all of them, a line each.
+    """
+    found = contradictions(recording, path, route)
+    if errors := [str(finding) for finding in found if finding.severity == "error"]:
+        raise ModelError("\n  ".join(errors))
+    return found
+
+
+def _missing(recording: Recording, file: str) -> Iterator[Finding]:
+    """Yield what no file is without, but a recording made in Python may be."""
+    needed = [column.name for column in RECORDING.columns if column.needed]
+    if missing := [name for name in needed if name not in recording]:
+        text = f"missing column {', '.join(missing)}"
+        yield Finding("error", file, 0, "", text, "", "every recording needs them")
+    elif len(recording) < RECORDING.rows_min:
+        text = f"{len(recording)} samples"
+        yield Finding("error", file, 0, "", text, "", f"{RECORDING.rows_min} are needed at least")
 
 
 def _not_numbers(recording: Recording, file: str) -> Iterator[Finding]:

@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from ..analysis.analysis import Analysis
+from ..analysis.checks import UNCHECKED, Checks
 from ..analysis.long_run import Columns, read_long_run
 from ..analysis.study_folder import StudyFolder
 from ..errors import ModelError
@@ -70,6 +71,7 @@ class Contents:
         texts: files to print in full for reproduction, by name.
         parameters: part (pldf, vehicle) -> FMI name -> value; as far as the run wrote them.
         participants: parameter of the simulated drivers -> smallest, median and largest value.
+        checks: what the check of the study's files found.
     """
 
     analysis: Analysis
@@ -80,6 +82,7 @@ class Contents:
     texts: Mapping[str, str]
     parameters: Mapping[str, Mapping[str, float]]
     participants: Mapping[str, tuple[float, float, float]]
+    checks: Checks = UNCHECKED
 
     @property
     def simulated(self) -> bool:
@@ -87,13 +90,19 @@ class Contents:
         return STUDY in self.texts
 
 
-def collect(analysis: Analysis, study: StudyFolder, driver: str | None = None) -> Contents:
+def collect(
+    analysis: Analysis,
+    study: StudyFolder,
+    driver: str | None = None,
+    checks: Checks = UNCHECKED,
+) -> Contents:
     """Read what the report of a study shows beside its numbers.
 
     Args:
         analysis: of the study.
         study: where it lies.
         driver: the participant to show in detail; None: the one nearest to the median effect.
+        checks: what the check of its files found.
 
     Raises:
         ModelError: there are no recordings of ``driver``, or they are not from the route.
@@ -117,6 +126,7 @@ def collect(analysis: Analysis, study: StudyFolder, driver: str | None = None) -
         texts=texts,
         parameters=parameters,
         participants=_parameter_ranges(folder / "participants.csv"),
+        checks=checks,
     )
 
 

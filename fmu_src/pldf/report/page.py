@@ -85,17 +85,29 @@ _FIGURES: Final = {
         "Legal limits, the speed that the curves allow, and the base profile planned from both "
         "with bounded acceleration and jerk.",
     ),
+    "quality": (
+        "Data quality",
+        "Each cell is a recording; hovering says its rate, how much of the road it covers and what "
+        "drop-outs of the logger cost. One with an error cannot be used; one with a warning can, "
+        "but a number may not mean what one takes it for: see below.",
+    ),
 }
+# What follows a figure: its template.
+_BELOW: Final = {"quality": "quality.html"}
 
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the page: a figure with its caption, or the template of its anchor's name."""
+    """A part of the page: a figure with its caption, or the template of its anchor's name.
+
+    ``below``: a template for what follows the figure.
+    """
 
     anchor: str
     title: str
     figure: Markup | None = None
     caption: str = ""
+    below: str = ""
 
 
 @dataclass(frozen=True)
@@ -141,13 +153,19 @@ def _templates() -> Environment:
         loader=PackageLoader(__package__), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
     )  # fmt: skip
-    templates.filters.update(minus=_minus, percent=_percent, change=_change, listed=_listed)
+    templates.filters.update(
+        minus=_minus, percent=_percent, change=_change, listed=_listed, file_name=_name
+    )
     return templates
 
 
 def _minus(text: str) -> Markup:
     """Return ``text`` with the sign for minus in place of hyphens."""
     return Markup(str(escape(text)).replace("-", "&minus;"))
+
+
+def _name(path: str) -> str:
+    return Path(path).name
 
 
 def _listed(names: Sequence[str]) -> str:
@@ -172,7 +190,8 @@ def _sections(contents: Contents) -> list[Section]:
     words = _words(contents)
     for name, scene in study_figures(contents).items():
         title, caption = (text.format(**words) for text in _FIGURES[name])
-        sections.append(Section(name, title, Markup(html_of(scene, name)), caption))
+        below = _BELOW.get(name, "")
+        sections.append(Section(name, title, Markup(html_of(scene, name)), caption, below))
     if contents.driver is None:
         sections.append(Section("driver", "One driver"))
     else:

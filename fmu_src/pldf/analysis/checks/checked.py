@@ -72,6 +72,9 @@ class Checks:
         return tuple(file for file in self.files if file.participant)
 
 
+UNCHECKED: Final = Checks()
+
+
 def in_order(findings: Iterable[Finding]) -> list[Finding]:
     """Return each finding once, errors first, then by file and line."""
     return sorted(

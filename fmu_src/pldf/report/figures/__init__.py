@@ -2,10 +2,11 @@
 
 from .driving import compared, drives, one_drive, recorded
 from .learning import development, long_run, steps
+from .quality import quality
 from .road import route
 from .shares import rate_bars, rates
 
 __all__ = [
-    "compared", "development", "drives", "long_run", "one_drive", "rate_bars", "rates",
+    "compared", "development", "drives", "long_run", "one_drive", "quality", "rate_bars", "rates",
     "recorded", "route", "steps",
 ]  # fmt: skip
