@@ -17,7 +17,8 @@ from pldf.kernel.codes import (
     OUTCOME_HOLE,
     OUTCOME_LEARNED,
 )
-from pldf.outcomes import TEXTS, held_places, signed, tenths, whole
+from pldf.outcome_words import TEXTS, pedal_words, signed, tenths, whole
+from pldf.outcomes import held_places
 from told_drive import driven, write_road
 
 
@@ -134,8 +135,8 @@ def test_many_bounds_are_counted_not_listed(made: DrivingFunction) -> None:
     hold = held_places(np.full(20, 2.0), np.full(20, 19.0))[0]
     outcomes = made.outcomes()
     many = outcomes.pedals[1]._replace(holds=(hold,) * 13)
-    assert outcomes.words(many).count("held at 68 km/h") == 10
-    assert outcomes.words(many).endswith("; held at 3 more places")
+    assert pedal_words(outcomes, many).count("held at 68 km/h") == 10
+    assert pedal_words(outcomes, many).endswith("; held at 3 more places")
 
 
 def test_numbers_are_rounded_as_in_c_and_zero_has_no_minus() -> None:

@@ -28,6 +28,7 @@ from .kernel.learning import learn_drive
 from .kernel.preparation import adopt_learned, start_drive
 from .kernel.signals import signals_of, text_parameter
 from .kernel.state import PldfState
+from .outcome_words import lines_of
 from .outcomes import Outcomes, outcomes_of
 from .profiles.store import (
     STORE_VARIABLE,
@@ -159,7 +160,7 @@ class DrivingFunction(Instance[PldfState]):
         """Learn from the drive and save the profile; called once at its end."""
         if drive.learns(self.record) and self.record.nodes >= 2 and self.stored is not None:
             iteration = self.learn()
-            for line in self.outcomes().lines():
+            for line in lines_of(self.outcomes()):
                 self.report("info", line)
             self._save(iteration)
 

@@ -1,71 +1,21 @@
-"""What became of each intervention of a drive, and why: one structure, one form in words.
+"""What became of each intervention of a drive, and why, in numbers.
 
-The kernel finds the figures (``kernel/outcomes``). The words are printf formats: the native FMUs
-print the same lines with them (``build/runtime/outcome.c``). They tell speeds in km/h; the
-structure has m/s.
+The kernel finds them (``kernel/outcomes``); ``outcome_words`` has the words.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from math import floor
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from .kernel.arrays import FloatArray, NextArrays, TraceArrays
 from .kernel.codes import (
-    BOUND_ACCEL,
-    BOUND_DECEL,
-    BOUND_JERK,
-    BOUND_LATERAL_ACCEL,
-    BOUND_LEGAL_LIMIT,
     BOUND_NONE,
-    OUTCOME_HOLE,
     OUTCOME_LEARNED,
-    OUTCOME_NOT_ELIGIBLE,
-    OUTCOME_STOP,
-    OUTCOME_TAKEN_BACK,
 )
 from .kernel.state import PldfState
-from .kernel.units import KMH_PER_MPS
 
-BOUND_WORDS: Final = {
-    BOUND_NONE: "no bound",
-    BOUND_LATERAL_ACCEL: "lateral acceleration",
-    BOUND_LEGAL_LIMIT: "legal limit + tolerance",
-    BOUND_ACCEL: "acceleration",
-    BOUND_DECEL: "deceleration",
-    BOUND_JERK: "jerk",
-}
-
-NOT_LEARNED: Final = "not learned: "
-# In people's words: %d takes a whole number of m or km/h, %s a name or a number with one decimal.
-TEXTS: Final = {
-    "PEDAL": "pedal intervention %d, %d to %d m: ",
-    "TRUNCATED": "(not over when the drive ended) ",
-    "NOT_MOVED": NOT_LEARNED + "the car did not move",
-    "LEARNED": "learned from %d to %d m, on average %s km/h, at most %s km/h",
-    "BARRED": ", but for %d m where learning was not allowed",
-    "HOLE": NOT_LEARNED + "a hole of %s s in the recording costs %d m",
-    "STOP": NOT_LEARNED + "the car was slower than %d km/h, a situation, not a wish",
-    "NOT_ELIGIBLE": NOT_LEARNED + "learning was not allowed there",
-    "SET_SPEED": "set speed, %d to %d m: ",
-    "SET_LEARNED": "%s km/h learned",
-    "SET_CUT": "%s km/h learned of the %s km/h set, held by legal limit + tolerance",
-    "SET_NOT_ELIGIBLE": "%s km/h not learned: learning was not allowed there",
-    "SET_TAKEN_BACK": NOT_LEARNED + "taken back at once",
-    "PLAN": "plan with the set speed: ",
-    "SEPARATOR": "; ",
-    "HELD": "held at %d km/h from %d to %d m by %s",
-    "HELD_BETWEEN": "held at %d to %d km/h from %d to %d m by %s",
-    "MORE": "held at %d more places",
-}
-
-# Of one intervention, so that its line stays readable.
-HOLDS_TOLD: Final = 10
-# Transitions shorter than this are left out of the words: the bounds trim an edge here and there.
-TRANSITION_MIN_M: Final = 10
 SAME_OFFSET_MPS: Final = 1e-9
 
 
@@ -157,38 +107,6 @@ class Outcomes(NamedTuple):
     plan_holds: tuple[Hold, ...]
     slowest_mps: float
 
-    def lines(self) -> Iterator[str]:
-        """Yield one line for people per intervention."""
-        for pedal in self.pedals:
-            place = whole(pedal.start_m), whole(pedal.end_m)
-            yield TEXTS["PEDAL"] % (pedal.number, *place) + self.words(pedal)
-        for series in self.set_speeds:
-            place = whole(series.from_m), whole(series.to_m)
-            yield TEXTS["SET_SPEED"] % place + set_speed_words(series)
-        told = _first(told_holds(self.plan_holds))
-        if told:
-            yield TEXTS["PLAN"] + TEXTS["SEPARATOR"].join(told)
-
-    def words(self, pedal: PedalOutcome) -> str:
-        """Return what became of ``pedal``, without its number and place."""
-        told = TEXTS["TRUNCATED"] if pedal.truncated else ""
-        if pedal.outcome == OUTCOME_LEARNED:
-            told += TEXTS["LEARNED"] % (
-                whole(pedal.learned_from_m),
-                whole(pedal.learned_to_m),
-                signed(KMH_PER_MPS * pedal.mean_change_mps),
-                signed(KMH_PER_MPS * pedal.largest_change_mps),
-            )
-            told += barred_words(pedal.barred_m)
-            return TEXTS["SEPARATOR"].join([told, *_first(told_holds(pedal.holds))])
-        if pedal.outcome == OUTCOME_HOLE:
-            return told + TEXTS["HOLE"] % (tenths(pedal.hole_s), whole(pedal.hole_m))
-        if pedal.outcome == OUTCOME_STOP:
-            return told + TEXTS["STOP"] % whole(KMH_PER_MPS * self.slowest_mps)
-        if pedal.outcome == OUTCOME_NOT_ELIGIBLE:
-            return told + TEXTS["NOT_ELIGIBLE"]
-        return told + TEXTS["NOT_MOVED"]
-
 
 def outcomes_of(st: PldfState, trace: TraceArrays, following: NextArrays) -> Outcomes:
     """Return what the kernel found out when it learned from a drive."""
@@ -247,43 +165,6 @@ def _set_speed(following: NextArrays, k: int) -> SetSpeedOutcome:
     )
 
 
-def set_speed_words(series: SetSpeedOutcome) -> str:
-    """Return what became of a series of presses, without its place."""
-    offset = signed(KMH_PER_MPS * series.offset_mps)
-    wish = signed(KMH_PER_MPS * series.wish_mps)
-    if series.outcome == OUTCOME_TAKEN_BACK:
-        return TEXTS["SET_TAKEN_BACK"]
-    if series.outcome == OUTCOME_NOT_ELIGIBLE:
-        return TEXTS["SET_NOT_ELIGIBLE"] % wish
-    told = TEXTS["SET_CUT"] % (offset, wish) if series.is_cut else TEXTS["SET_LEARNED"] % offset
-    return told + barred_words(series.barred_m)
-
-
-def barred_words(metres: float) -> str:
-    """Return what of a lesson was left out; empty if nothing was."""
-    return TEXTS["BARRED"] % whole(metres) if metres > 0.0 else ""
-
-
-def told_holds(holds: Iterable[Hold]) -> list[str]:
-    """Return the holds in words, but for short transitions."""
-    return [hold_words(hold) for hold in holds if _is_told(hold)]
-
-
-def hold_words(hold: Hold) -> str:
-    """Return where a bound holds the profile, and at which speed."""
-    place = (whole(hold.from_m), whole(hold.to_m), BOUND_WORDS[hold.bound])
-    low, high = whole(KMH_PER_MPS * hold.low_mps), whole(KMH_PER_MPS * hold.high_mps)
-    if high == low:
-        return TEXTS["HELD"] % (low, *place)
-    return TEXTS["HELD_BETWEEN"] % (low, high, *place)
-
-
-def is_outcome(text: str) -> bool:
-    """Tell whether a message of an FMU is one of these lines."""
-    starts = (TEXTS[name].partition("%")[0] for name in ("PEDAL", "SET_SPEED", "PLAN"))
-    return text.startswith(tuple(starts))
-
-
 def held_places(bound: FloatArray, speed_mps: FloatArray) -> list[Hold]:
     """Return the holds of a stored profile: which bound cut each node, and its speed, per node."""
     first = np.flatnonzero(np.diff(bound, prepend=np.nan) != 0.0)
@@ -293,33 +174,3 @@ def held_places(bound: FloatArray, speed_mps: FloatArray) -> list[Hold]:
         for a, b in zip(first.tolist(), behind.tolist(), strict=True)
         if bound[a] > BOUND_NONE
     ]
-
-
-def _is_told(hold: Hold) -> bool:
-    transition = hold.bound not in (BOUND_LATERAL_ACCEL, BOUND_LEGAL_LIMIT)
-    return not transition or hold.to_m - hold.from_m >= TRANSITION_MIN_M
-
-
-def _first(told: list[str]) -> list[str]:
-    """Return what fits into one line."""
-    more = len(told) - HOLDS_TOLD
-    return told if more <= 0 else [*told[:HOLDS_TOLD], TEXTS["MORE"] % more]
-
-
-# The native FMUs round in the same way, and whatever the importer's locale: so not by printf.
-
-
-def whole(value: float) -> int:
-    """Return the nearest whole number."""
-    return floor(value + 0.5)
-
-
-def tenths(value: float) -> str:
-    """Return the absolute value with one decimal."""
-    count = whole(10.0 * abs(value))
-    return f"{count // 10}.{count % 10}"
-
-
-def signed(value: float) -> str:
-    """Return the value with sign and one decimal."""
-    return ("-" if whole(10.0 * value) < 0 else "+") + tenths(value)

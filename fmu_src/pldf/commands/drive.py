@@ -16,7 +16,7 @@ from ..durations import minutes
 from ..errors import ModelError
 from ..kernel.codes import LEARN
 from ..kernel.units import KMH_PER_MPS
-from ..outcomes import is_outcome
+from ..outcome_words import is_outcome
 from ..profiles.store import STORE_VARIABLE, ProfileStore
 from ..recordings.recording import write_recording
 from ..roads import fingerprint

@@ -8,6 +8,7 @@ import sys
 from typing import Any, Final
 
 from ..function import DrivingFunction
+from ..outcome_words import lines_of
 from ..profiles.store import (
     StoredProfile,
     continue_profile,
@@ -103,7 +104,7 @@ def _print_summary(learned: Learned, report: dict[str, Any], out: str) -> None:
         f"Rates: pedal {rates['pedal']:.1%}, set speed {rates['set_speed']:.1%}, "
         f"combined {rates['combined']:.1%}"
     )
-    lines = list(learned.function.outcomes().lines())
+    lines = list(lines_of(learned.function.outcomes()))
     for line in lines or ["no intervention, so nothing was learned"]:
         print(line[0].upper() + line[1:])
     print(f"Iteration {learned.iteration.number} written to {out}")

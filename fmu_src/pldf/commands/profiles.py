@@ -17,7 +17,8 @@ from ..files.tables import table_csv, write_table
 from ..kernel.arrays import FloatArray
 from ..kernel.codes import BOUND
 from ..kernel.units import KMH_PER_MPS
-from ..outcomes import held_places, told_holds
+from ..outcome_words import told_holds
+from ..outcomes import held_places
 from ..profiles.store import (
     STORE_VARIABLE,
     ProfileRefused,

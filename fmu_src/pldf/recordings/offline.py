@@ -23,15 +23,8 @@ from ..kernel.codes import (
 from ..kernel.replay import Samples, replay
 from ..kernel.stretch import stretch_factor, stretched_position
 from ..kernel.units import KMH_PER_MPS
-from ..outcomes import (
-    NOT_LEARNED,
-    TEXTS,
-    Hold,
-    Outcomes,
-    PedalOutcome,
-    SetSpeedOutcome,
-    set_speed_words,
-)
+from ..outcome_words import NOT_LEARNED, TEXTS, pedal_words, set_speed_words
+from ..outcomes import Hold, Outcomes, PedalOutcome, SetSpeedOutcome
 from ..profiles.store import Iteration, StoredProfile
 from ..roads import Route, fingerprint
 from .derived import completed
@@ -158,7 +151,7 @@ def _explain_pedal(learned: Learned, outcomes: Outcomes, pedal: PedalOutcome) ->
         "end_m": pedal.end_m,
         "truncated": pedal.truncated,
         "outcome": OUTCOME.items[pedal.outcome].lower(),
-        "told": outcomes.words(pedal),
+        "told": pedal_words(outcomes, pedal),
         "learned_m": pedal.learned_m,
     }
     if pedal.end_m > pedal.start_m:

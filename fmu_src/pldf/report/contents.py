@@ -19,6 +19,7 @@ from ..files.tables import read_table
 from ..function import DrivingFunction
 from ..kernel.parameters import PlannerParameters
 from ..kernel.signals import signals_of
+from ..outcome_words import lines_of
 from ..profiles.stored_profile import Iteration, StoredProfile
 from ..recordings.offline import learn_from
 from ..recordings.recording import Recording
@@ -215,7 +216,7 @@ def _driver(
         participant=participant,
         recordings=recordings,
         profile=profile,
-        outcomes=tuple(learned.function.outcomes().lines()),
+        outcomes=tuple(lines_of(learned.function.outcomes())),
         steps=explain_steps(learned),
         explained=first,
         acting=tuple(p for names in study.compared().values() for p in names if p in recordings),

@@ -18,7 +18,8 @@ from ...kernel.codes import BOUND, LOCALIZATION, OUTCOME, PROFILE_STATUS
 from ...kernel.ranges import LAST_NODE, NODES, Range, columns_of, ranges_of
 from ...kernel.signals import Signal, by_reference, time_reference, variables_of
 from ...kernel.units import KMH_PER_MPS
-from ...outcomes import BOUND_WORDS, HOLDS_TOLD, SAME_OFFSET_MPS, TEXTS, TRANSITION_MIN_M
+from ...outcome_words import BOUND_WORDS, HOLDS_TOLD, TEXTS, TRANSITION_MIN_M
+from ...outcomes import SAME_OFFSET_MPS
 from ...profiles.file_parts import ALIGNMENT, CHECKSUM_SIZE, COLUMNS, NODES_MAX, Column
 from ...profiles.profile_format_1 import COLUMNS_1
 from ...profiles.stored_profile import KINDS

@@ -1,4 +1,4 @@
-/* What became of each intervention of a drive, in the words of pldf/outcomes.py. */
+/* What became of each intervention of a drive, in the words of pldf/outcome_words.py. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
