@@ -86,6 +86,21 @@ def test_a_hole_is_told_with_time_and_length(made: DrivingFunction) -> None:
     assert lost.hole_s == pytest.approx(2.0, abs=0.04)
 
 
+@pytest.mark.parametrize("from_m", [500.0, 650.0, 780.0])
+def test_a_hole_is_told_whole_wherever_it_touches(from_m: float) -> None:
+    """Gas from 600 to 800 m; 60 m are missing where it is stretched to, within, at its end."""
+    made = function(road(2000.0))
+    s_m = np.arange(0.0, 2000.5, 0.5)
+    gas = (s_m >= 600.0) & (s_m < 800.0)
+    kept = (s_m <= from_m) | (s_m >= from_m + 60.0)
+    mode = np.where(gas, GAS_OVERRIDE, ACTIVE)[kept]
+    play(made, s_m[kept], 30.0, time_s=s_m[kept] / 30.0, mode=mode)
+    made.learn()
+    (pedal,) = made.outcomes().pedals
+    assert (pedal.outcome, pedal.hole_m) == (OUTCOME_HOLE, 60.0)
+    assert pedal.hole_s == pytest.approx(2.0)
+
+
 def test_what_was_left_out_of_a_lesson_is_told(made: DrivingFunction) -> None:
     """10 m recorded where learning was not allowed: there, and where stretching took them to."""
     pedal = made.outcomes().pedals[0]
