@@ -6,7 +6,11 @@ needs an optional package is imported when it is needed.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import gc
+import logging
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -29,6 +33,8 @@ from ..files.tables import (
 from ..findings import Finding
 from ..kernel.arrays import FloatArray
 from .units import header_of
+
+MDF_TIME: Final = "time_s"  # the time of a channel, whatever its master is called
 
 Cells = Sequence[Cell] | FloatArray
 
@@ -64,16 +70,52 @@ class Input:
         """
         if self.load is None:
             return read_table(self.path, form), ()
-        loaded = self.load([name for name in form.names if name in self.names])
+        with _told_as_unreadable(self.path):
+            loaded = self.load([name for name in form.names if name in self.names])
+        return parse_table(table_csv(loaded.cells), self.path, form), loaded.notes
+
+    @contextmanager
+    def placed(self) -> Iterator[None]:
+        """Have faults name samples where the file has no lines: those are of a text nobody sees."""
         try:
-            return parse_table(table_csv(loaded.cells), self.path, form), loaded.notes
-        except TableError as error:  # its lines are those of a text that nobody sees
+            yield
+        except TableError as error:
+            if self.load is None:
+                raise
             raise TableError(self.path, [_of_sample(fault) for fault in error.faults]) from None
+
+    def place(self, finding: Finding) -> Finding:
+        """Return ``finding`` with a sample in place of a line if the file has no lines."""
+        if self.load is None or not finding.line:
+            return finding
+        fault = _of_sample(Fault(finding.line, finding.place, finding.text))
+        return finding._replace(line=0, place=fault.place)
 
 
 def _of_sample(fault: Fault) -> Fault:
     sample = f"sample {fault.line - 1}" if fault.line > 1 else ""
     return Fault(0, ", ".join(filter(None, (sample, fault.place))), fault.text)
+
+
+@contextmanager
+def _told_as_unreadable(path: Path) -> Iterator[None]:
+    """Tell whatever a library raises at a damaged file; its own clean-up may fail, too."""
+    hook = sys.unraisablehook
+    sys.unraisablehook = lambda _unraisable: None
+    problem = None
+    try:
+        yield
+    except (ModelError, FileNotFoundError, PermissionError, IsADirectoryError):
+        raise
+    except Exception as error:
+        problem = " ".join(f"{error}".split()) or type(error).__name__
+        # What was half opened lives in its frames; asammdf fails to close that.
+        error.__traceback__ = error.__context__ = error.__cause__ = None
+        gc.collect()
+    finally:
+        sys.unraisablehook = hook
+    if problem is not None:
+        raise ModelError(f"{path}: not a file of its kind that can be read ({problem[:200]})")
 
 
 def open_input(path: Path) -> Input:
@@ -83,8 +125,11 @@ def open_input(path: Path) -> Input:
         ModelError: the file cannot be read, or the package that reads it is not installed.
     """
     opened = _OPENERS.get(path.suffix.lower(), _open_csv)
-    try:
+    if opened is _open_csv:
         return opened(path)
+    try:
+        with path.open("rb"), _told_as_unreadable(path):
+            return opened(path)
     except OSError as error:
         raise ModelError(f"{path}: cannot be read ({reason(error)}); check the path") from error
 
@@ -104,12 +149,7 @@ def _open_parquet(path: Path) -> Input:
         import pyarrow.parquet as pq  # type: ignore[import-untyped]  # noqa: PLC0415
     except ImportError as error:
         raise not_installed("Parquet", "pyarrow", "parquet") from error
-    with path.open("rb"):
-        pass  # a file that is not there is told as it is for all others
-    try:
-        schema = pq.read_schema(path)
-    except pa.ArrowException as error:
-        raise _unreadable(path, "Parquet file", error) from error
+    schema = pq.read_schema(path)
     stated = {
         part.name: "date" if pa.types.is_timestamp(part.type) else _text_of(part.metadata, b"unit")
         for part in schema
@@ -141,28 +181,27 @@ def _cell(value: Any) -> Cell:
 def _open_mdf(path: Path) -> Input:
     try:
         from asammdf import MDF  # noqa: PLC0415 - optional
-        from asammdf.blocks.utils import MdfException  # noqa: PLC0415
     except ImportError as error:
         raise not_installed("MDF4", "asammdf", "mdf") from error
-    with path.open("rb"):
-        pass
-    try:
-        with MDF(path) as file:
-            names = tuple(channel.name for group in file.groups for channel in group.channels)
-            units = {
-                channel.name: channel.unit
-                for group in file.groups
-                for channel in group.channels
-                if getattr(channel, "unit", "")
-            }
-    except (MdfException, ValueError, KeyError, IndexError) as error:
-        raise _unreadable(path, "MDF file", error) from error
+    logging.getLogger("asammdf").setLevel(logging.CRITICAL)  # what it says is told by an error
+    with MDF(path) as file:
+        groups: list[Any] = list(file.groups)
+        channels = [
+            channel
+            for at, group in enumerate(groups)
+            for number, channel in enumerate(group.channels)
+            if file.masters_db.get(at) != number
+        ]
+    names = tuple(channel.name for channel in channels)
+    stated = {channel.name: getattr(channel, "unit", "") for channel in channels}
+    units = {**_units_in(names), **{name: unit for name, unit in stated.items() if unit}}
 
     def load(wanted: Sequence[str]) -> Loaded:
         with MDF(path) as file:
-            return _channels(path, {name: file.get(name) for name in wanted})
+            signals = {name: file.get(name) for name in wanted if name != MDF_TIME}
+        return _channels(path, signals)
 
-    return Input(path, names, {**_units_in(names), **units}, load)
+    return Input(path, (MDF_TIME, *(name for name in names if name != MDF_TIME)), units, load)
 
 
 def _channels(path: Path, signals: Mapping[str, Any]) -> Loaded:
@@ -171,20 +210,19 @@ def _channels(path: Path, signals: Mapping[str, Any]) -> Loaded:
     Numbers of others are linear in between; texts, flags and codes hold until the next sample. The
     ends are where all channels have begun and none has ended.
     """
-    time = max((s.timestamps for s in signals.values()), key=len)
-    first = max(float(s.timestamps[0]) for s in signals.values())
-    last = min(float(s.timestamps[-1]) for s in signals.values())
-    kept = time[(time >= first) & (time <= last)]
-    cells: dict[str, Cells] = {}
-    other = []
-    for name, signal in signals.items():
-        if not np.array_equal(signal.timestamps, time):
-            other.append(name)
-        cells[name] = _at_times(signal, kept)
+    if without := [name for name, signal in signals.items() if not len(signal.timestamps)]:
+        raise ModelError(f"{path}: no samples of {', '.join(without)}")
+    time = max((signal.timestamps for signal in signals.values()), key=len)
+    first = max(float(signal.timestamps[0]) for signal in signals.values())
+    last = min(float(signal.timestamps[-1]) for signal in signals.values())
+    kept = time[(time >= first) & (time <= last)].astype(np.float64)
+    cells: dict[str, Cells] = {MDF_TIME: kept}
+    cells |= {name: _at_times(signal, kept) for name, signal in signals.items()}
+    other = [name for name, s in signals.items() if not np.array_equal(s.timestamps, time)]
     if not other:
         return Loaded(cells)
-    text = f"{len(other)} channels have other times of sampling: {', '.join(other)}"
-    effect = "numbers are linear in between, codes and texts hold until the next sample"
+    text = f"other times of sampling than most have {', '.join(other)}"
+    effect = "their numbers are linear in between, codes and texts hold until the next sample"
     return Loaded(cells, (Finding("note", str(path), 0, "", text, effect),))
 
 
@@ -200,11 +238,8 @@ def _at_times(signal: Any, time: FloatArray) -> Cells:
 
 def _open_numpy(path: Path) -> Input:
     """Open a structured array in .npy, or columns of one length in .npz."""
-    try:
-        stored = np.load(path, allow_pickle=False)
-        arrays = stored if isinstance(stored, np.ndarray) else dict(stored)
-    except (ValueError, EOFError) as error:
-        raise _unreadable(path, "NumPy file", error) from error
+    stored = np.load(path, allow_pickle=False)
+    arrays = stored if isinstance(stored, np.ndarray) else dict(stored)
     if isinstance(arrays, dict) and len(arrays) == 1:
         (arrays,) = arrays.values()
     if isinstance(arrays, np.ndarray):
@@ -221,10 +256,6 @@ def _open_numpy(path: Path) -> Input:
         return Loaded({name: [_cell(v) for v in arrays[name].tolist()] for name in wanted})
 
     return Input(path, tuple(arrays), _units_in(arrays), load)
-
-
-def _unreadable(path: Path, what: str, error: Exception) -> ModelError:
-    return ModelError(f"{path}: not a {what} that can be read ({' '.join(str(error).split())})")
 
 
 def not_installed(format_name: str, package: str, extra: str) -> ModelError:

@@ -60,27 +60,37 @@ def read_columns(path: Path, mapping: RecordingMap | None) -> Columns:
         ModelError: naming file, line, column and value of all that cannot be used.
     """
     file = open_input(path)
-    mapping = mapping or remembered_map(path)
-    notes: list[Finding] = []
+    with file.placed():
+        found = _read(file, mapping or remembered_map(path))
+    return found._replace(notes=tuple(map(file.place, found.notes)))
+
+
+def _read(file: Input, mapping: RecordingMap | None) -> Columns:
     if mapping is None:
         mapping = _recognised(file) or RecordingMap("")
     mapping = with_meant_names(file, mapping, notes)
     found = _found(file, mapping)
+    notes = list(_other_units(file, mapping, found))
     if mapping.name or any(_is_converted(column) for column in found):
         notes.append(_told(file, mapping, found))
     table, told = file.table(_format(found, mapping))
     numbers = _numbers(table, found, mapping)
     notes += told + tuple(getattr(table, "notes", ()))
     table.refuse(_back_in_time(table, numbers["time_s"], found))
-    return Columns(*_with_growing_time(table, numbers, notes))
+    return _with_growing_time(table, numbers, notes)
 
 
 def _recognised(file: Input) -> RecordingMap | None:
     """Return the ready map that fits a file without our names."""
     if all(column.name in file.names for column in RECORDING.columns if column.needed):
         return None
-    fitting = [m for m in ready_maps().values() if not list(_unresolved(file, m))]
+    fitting = [ready for ready in ready_maps().values() if fits(file, ready)]
     return fitting[0] if len(fitting) == 1 else None
+
+
+def fits(file: Input, mapping: RecordingMap) -> bool:
+    """Tell whether ``file`` has all columns that ``mapping`` and a recording need."""
+    return not list(_unresolved(file, mapping))
 
 
 def _found(file: Input, mapping: RecordingMap) -> list[Found]:
@@ -89,7 +99,10 @@ def _found(file: Input, mapping: RecordingMap) -> list[Found]:
         if mapping.name:
             raise ModelError("\n  ".join(wrong))
         try:
-            file.table(RECORDING)
+            if file.load is None:
+                file.table(RECORDING)  # says it with the line of the header
+            lacks = f"{wrong[0]}; a recording has the columns {RECORDING.header}"
+            raise TableError(file.path, [Fault(0, "", lacks)])
         except TableError as error:
             raise ModelError(f"{error}\n  {_way_out(file.path)}") from None
     found = []
@@ -174,11 +187,24 @@ def _is_converted(found: Found) -> bool:
     return bool(found.name) and found.unit != found.ours.unit
 
 
+def _other_units(file: Input, mapping: RecordingMap, found: list[Found]) -> Iterator[Finding]:
+    """Yield where the map and the file, each by itself, say what unit a column has."""
+    for one in found:
+        stated = unit_named(file.units.get(one.name, ""))
+        if one.source.unit and stated in units_of(one.ours.unit) and stated != one.source.unit:
+            yield Finding(
+                "warning", str(file.path), 0, one.ours.name,
+                f"{one.name!r} says {stated}, the map {mapping.name} {one.source.unit}",
+                "the map counts", "correct the map if the file is right",
+            )  # fmt: skip
+
+
 def _told(file: Input, mapping: RecordingMap, found: list[Found]) -> Finding:
     said = []
     for column in found:
         if not column.name:
-            said.append(f"{column.ours.name} is {column.source.value} throughout")
+            value = f"{column.source.value} {column.unit if column.ours.unit else ''}".strip()
+            said.append(f"{column.ours.name} is {value} throughout")
         elif column.name != column.ours.name or _is_converted(column):
             name = repr(column.name) + (f" + {column.plus!r}" if column.plus else "")
             unit = f" in {column.unit}" if _is_converted(column) else ""
@@ -190,7 +216,7 @@ def _told(file: Input, mapping: RecordingMap, found: list[Found]) -> Finding:
 def _format(found: list[Found], mapping: RecordingMap) -> Format:
     """Return what the file has to hold, by its own names."""
     columns: dict[str, Column] = {}
-    for one in found:
+    for one in (one for one in found if one.name):
         as_text = one.unit == DATE_TIME or (one.name != one.ours.name and one.ours.kind == "flag")
         as_text = as_text or bool(_words(one.ours, mapping))
         kind = "text" if as_text else one.ours.kind
@@ -205,7 +231,6 @@ def _format(found: list[Found], mapping: RecordingMap) -> Format:
                 f"{mapping.name}, line {one.source.line}, recording.{one.ours.name}: the column "
                 f"{one.name!r} cannot hold texts and numbers; name another one"
             )
-    columns.pop("", None)
     return replace(RECORDING, columns=tuple(columns.values()))
 
 

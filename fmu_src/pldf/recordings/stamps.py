@@ -14,7 +14,9 @@ from ..kernel.arrays import FloatArray
 _DAY_S: Final = 86400.0
 _HALF_DAY_S: Final = 43200.0
 _HOLE: Final = 1.5  # a step of stamps this many times as long as usual is no rounding, but a hole
-_COARSE: Final = 0.2  # share of samples with the stamp of the one before, from which all are coarse
+_COARSE: Final = (
+    0.05  # share of samples with the stamp of the one before, from which all are coarse
+)
 
 
 def seconds_of_dates(texts: Sequence[str]) -> FloatArray:
@@ -24,7 +26,7 @@ def seconds_of_dates(texts: Sequence[str]) -> FloatArray:
     time zone are taken as of one zone.
     """
     seconds = np.array([_seconds(text) for text in texts], dtype=np.float64)
-    if all(len(text) < len("2026-01-01") for text in texts):
+    if all(":" in text[:3] for text in texts):
         days = np.diff(seconds, prepend=seconds[:1]) < -_HALF_DAY_S
         seconds = seconds + _DAY_S * np.cumsum(days)
     known = seconds[np.isfinite(seconds)]
