@@ -233,6 +233,13 @@ def test_stamps_count_from_the_first(tmp_path: Path, unit: str, stamps: tuple[st
     np.testing.assert_allclose(read["time_s"], [0.0, 0.05, 0.1], atol=1e-6)
 
 
+def test_a_missing_number_is_missing_in_any_unit(tmp_path: Path) -> None:
+    told = refusal(tmp_path, LABORATORY.replace(",72,on,0,\n", ",-99,on,0,\n"))
+    assert "line 2, Speed (km/h): '-99' is not a number" in told
+    told = refusal(tmp_path, LABORATORY.replace(",73.8,", ",7380,"))
+    assert "line 4, Speed (km/h): 2050 is not a number from -90 to 1000 in m/s" in told
+
+
 def test_a_stamp_that_is_no_date_is_told(tmp_path: Path) -> None:
     line = 'time_s = { column = "Time [ms]", unit = "date" }'
     told = refusal(tmp_path, mapping=MAP.replace('time_s = "Time [ms]"', line))
@@ -248,7 +255,7 @@ def test_a_unit_that_contradicts_the_header_is_told(tmp_path: Path) -> None:
     assert "'Time [ms]' says ms, the map" in warnings[0].text
 
 
-numbers = st.floats(-200.0, 200.0).map(lambda value: round(value, 6))
+numbers = st.floats(0.0, 200.0).map(lambda value: round(value, 6))
 
 
 @given(

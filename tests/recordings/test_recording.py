@@ -85,7 +85,7 @@ def test_what_lacks_is_derived_from_the_road_and_the_profile() -> None:
     mode[100:120] = GAS_OVERRIDE
     mode[200:] = STANDBY
     few = Recording({"time_s": time, "s_m": 10.0 * time, "speed_mps": 10.0 + time, "mode": mode})
-    whole = completed(few, function.route, function.profile)
+    whole = completed(few, function)
     assert list(whole.columns) == list(COLUMNS)
     cell = few["s_m"].astype(int)
     limit = np.asarray(function.route.limit_mps)[cell]

@@ -68,14 +68,15 @@ def read_columns(path: Path, mapping: RecordingMap | None) -> Columns:
 def _read(file: Input, mapping: RecordingMap | None) -> Columns:
     if mapping is None:
         mapping = _recognised(file) or RecordingMap("")
+    notes: list[Finding] = []
     mapping = with_meant_names(file, mapping, notes)
     found = _found(file, mapping)
-    notes = list(_other_units(file, mapping, found))
+    notes += _other_units(file, mapping, found)
     if mapping.name or any(_is_converted(column) for column in found):
         notes.append(_told(file, mapping, found))
     table, told = file.table(_format(found, mapping))
     numbers = _numbers(table, found, mapping)
-    notes += told + tuple(getattr(table, "notes", ()))
+    notes += [*told, *table.notes]
     table.refuse(_back_in_time(table, numbers["time_s"], found))
     return _with_growing_time(table, numbers, notes)
 
@@ -222,8 +223,9 @@ def _format(found: list[Found], mapping: RecordingMap) -> Format:
         kind = "text" if as_text else one.ours.kind
         unit = "" if as_text else one.unit
         column = replace(one.ours, name=one.name, kind=kind, unit=unit, needed=True)
-        if _is_calculated(one):  # its range is that of the result
-            column = replace(column, low=-inf, high=inf)
+        if _is_calculated(one):  # its range is that of the result, but -99 is missing in any unit
+            scaled = bool(one.plus) or (one.source.factor, one.source.add) != (1.0, 0.0)
+            column = replace(column, low=-inf if scaled else column.low, high=inf)
         if one.plus:
             columns.setdefault(one.plus, replace(column, name=one.plus))
         if columns.setdefault(one.name, column).kind != kind:
