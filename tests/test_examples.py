@@ -8,10 +8,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pldf
 import pytest
 from laboratory import files
 from pldf import cli
+from pldf.recordings.mapping import read_map
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 
@@ -130,3 +132,35 @@ def test_analyse_a_laboratory(tmp_path: Path) -> None:
     laboratory = str(tmp_path / "laboratory")
     assert cli.main(["analyse", laboratory, "--route", road, "--report", report]) == 0
     assert "P003" in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_simulator_recording(tmp_path: Path) -> None:
+    said = run(tmp_path, "05_a_simulator_recording.py")
+    assert "speed_mps from 'Ego speed [km/h]' in km/h" in said
+    assert "75.0 km/h at 400 m" in said
+    run(tmp_path, "01_learn_from_my_recording.py")
+    ours = pldf.read_profile(tmp_path / "my_profile.pldf").iteration().learned_mps
+    theirs = pldf.read_profile(tmp_path / "simulator.pldf").iteration().learned_mps
+    np.testing.assert_allclose(theirs, ours, atol=1e-9)
+
+
+def test_the_map_in_the_docs_is_the_one_of_the_example(tmp_path: Path) -> None:
+    run(tmp_path, "05_a_simulator_recording.py")
+    page = (EXAMPLES.parent / "docs" / "recordings.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"^```toml\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    (tmp_path / "docs.toml").write_text(text, encoding="utf-8")
+    by_example, by_docs = (
+        pldf.read_recording(tmp_path / "simulator.csv", tmp_path / f"{name}.toml")
+        for name in ("simulator", "docs")
+    )
+    for name in by_example.columns:
+        np.testing.assert_array_equal(by_docs[name], by_example[name])
+
+
+def test_every_line_for_a_column_in_the_docs_is_a_map(tmp_path: Path) -> None:
+    page = (EXAMPLES.parent / "docs" / "recordings.md").read_text(encoding="utf-8")
+    lines = re.findall(r"^\| `(\w+ = .*?)` \|", page, re.MULTILINE)
+    assert len(lines) == 6
+    for line in lines:
+        (tmp_path / "m.toml").write_text(f"[recording]\n{line}\n", encoding="utf-8")
+        assert read_map(tmp_path / "m.toml").columns

@@ -25,6 +25,7 @@ from ..errors import ModelError
 from ..findings import Finding
 from ..recordings.mapping import RecordingMap
 from ..recordings.quality import Quality
+from ..recordings.suggest import suggest_map
 from ..roads import Road, route_arrays
 from .shared.mapping import add_map, chosen_map
 from .shared.progress import progress_bar
@@ -32,7 +33,8 @@ from .shared.road import add_road, chosen_road, default_limit_mps
 
 EXAMPLE: Final = (
     "pldf check laboratory --route road.xodr\n"
-    "  pldf check drive1.csv drive2.csv --route study --json > problems.json"
+    "  pldf check drive1.csv drive2.csv --route study --json > problems.json\n"
+    "  pldf check simulator.csv --suggest-map > map.toml"
 )
 
 _STYLES: Final = {"error": "bold red", "warning": "yellow", "note": ""}
@@ -52,12 +54,22 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="leave this participant of a study out (repeatable)",
     )  # fmt: skip
     parser.add_argument(
+        "--suggest-map", action="store_true",
+        help="print a first mapping file for the recording PATH, to complete and give to --map",
+    )  # fmt: skip
+    parser.set_defaults(wrong_usage=parser.error)
+    parser.add_argument(
         "--json", action="store_true", help="print all that was found, for programs"
     )
 
 
 def run(options: argparse.Namespace) -> int:
     """Print all findings; return 1 if there are errors."""
+    if options.suggest_map:
+        if len(options.paths) > 1:
+            options.wrong_usage("--suggest-map takes one recording; others like it use its map")
+        print(suggest_map(options.paths[0]), end="")
+        return 0
     road, mapping = chosen_road(options), chosen_map(options)
     known = Known(
         route_arrays(road.route) if road else None,
