@@ -22,7 +22,7 @@ Key = tuple[str, ...]
 StructT = TypeVar("StructT", bound=msgspec.Struct)
 
 _AT: Final = re.compile(r" - at `\$\.?(?P<path>.*?)(\[(?P<item>\d+)\])?`$")
-_UNKNOWN: Final = re.compile(r"contains unknown field `(.*?)`")
+_UNKNOWN: Final = re.compile(r"contains unknown field `(.*?)`(?= - at `|$)")
 _HEADER: Final = re.compile(r"\s*\[\s*([^\[\]]+?)\s*\]\s*(#.*)?$")
 _ASSIGNMENT: Final = re.compile(r"\s*([^=#]+?)\s*=")
 _PART: Final = re.compile(r'"([^"]*)"|\'([^\']*)\'|([^.\s]+)')

@@ -361,3 +361,15 @@ def test_an_interval_of_rates_ends_at_0_and_1(tmp_path: Path) -> None:
     rows = [(f"P{at}", phase, (x, x, x)) for at, x in enumerate(rates) for phase in PHASES]
     interval = analyse(study(tmp_path, drives(rows))).interval("A1", "pedal")
     assert (interval.value, interval.low, interval.high) == (0.5, 0.0, 1.0)
+
+
+def test_how_drives_and_exclusions_were_read_is_told(tmp_path: Path) -> None:
+    source = study(tmp_path)
+    path = tmp_path / "drives.csv"
+    path.write_text(path.read_text().replace("pedal_rate", "Pedal_Rate", 1))
+    (tmp_path / "exclusions.csv").write_bytes(
+        "participant,phase,reason\nP1,A3,Stra\u00dfe na\u00df\n".encode("latin-1")
+    )
+    told = list(map(str, analyse(source).notes))
+    assert any("the column 'Pedal_Rate' is read as pedal_rate" in note for note in told)
+    assert any("exclusions.csv, line 2: not UTF-8; read as Windows-1252" in note for note in told)

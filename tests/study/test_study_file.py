@@ -118,6 +118,7 @@ ERRORS = {
     "[participants]\ncuont = 3": "line 2, participants.cuont: unknown; did you mean count?",
     "participants = 3": "line 1, participants: 3 must be a table: write [participants]",
     "[people]\ncount = 3": "line 1, people: unknown; known are participants, drives,",
+    '"`title" = 3': "line 1, `title: unknown; did you mean title?",
     "titel = 3": "line 1, titel: unknown; did you mean title?",
     "title = 3": "line 1, title: 3 must be a text in quotes",
     'title = "a"\nx = ?\n': "not valid TOML: Invalid value (at line 2, column 5)",

@@ -32,18 +32,23 @@ def row_of_recording(participant: str, phase: str, recording: Recording, where: 
     )
 
 
-def read_drives(path: Path, left_out: LeftOut | None = None) -> list[DriveRow]:
+def read_drives(
+    path: Path, left_out: LeftOut | None = None, notes: list[Finding] | None = None
+) -> list[DriveRow]:
     """Read the drives in the CSV file ``path``, in order.
 
     Args:
         path: the file.
         left_out: says of the cells of a row, by column, whether it is passed over.
+        notes: how the file was read is added to them.
 
     Raises:
         ModelError: naming file, line, participant, phase, column and value of what is wrong.
     """
     table = read_table(path, DRIVES, left_out)
     table.refuse((*_other_systems(table), *_impossible_shares(table)))
+    if notes is not None:
+        notes += table.notes
     return [_drive(table, row) for row in range(len(table))]
 
 

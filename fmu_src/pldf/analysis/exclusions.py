@@ -52,9 +52,10 @@ class Exclusion(NamedTuple):
 
 @dataclass(frozen=True)
 class Exclusions:
-    """All that is left out."""
+    """All that is left out, and how it was read."""
 
     listed: tuple[Exclusion, ...] = ()
+    notes: tuple[Finding, ...] = ()
 
     def has(self, participant: str, phase: str = "") -> bool:
         """Tell whether a participant, or one drive of theirs, is left out."""
@@ -99,4 +100,4 @@ def read_exclusions(path: Path, without: Collection[str] = ()) -> Exclusions:
     phases = table.texts.get("phase", [""] * len(table))
     rows = zip(table.texts["participant"], phases, table.texts["reason"], table.lines, strict=True)
     listed = [Exclusion(who, drive, why, f"{path}, line {at}") for who, drive, why, at in rows]
-    return Exclusions((*listed, *named))
+    return Exclusions((*listed, *named), tuple(table.notes))

@@ -66,7 +66,7 @@ def gather(study: StudyFolder, reading: Reading) -> Gathered:
         )
     else:
         _read_recordings(study, found, reading)
-    found.notes += study.exclusions.idle(found.met)
+    found.notes += (*study.exclusions.notes, *study.exclusions.idle(found.met))
     found.problems = brought_together(found.problems)
     found.notes = brought_together(found.notes)
     return found
@@ -78,7 +78,7 @@ def _read_table(study: StudyFolder, found: Gathered) -> None:
         return study.exclusions.has(cells["participant"], cells["phase"])
 
     try:
-        rows = read_drives(found.source, left_out)
+        rows = read_drives(found.source, left_out, found.notes)
     except ModelError as error:
         found.problems += findings_of(error, str(found.source))
         return

@@ -110,8 +110,9 @@ def _road(path: Path, known: Known) -> list[Finding]:
 
 
 def _drives(path: Path, _known: Known) -> list[Finding]:
-    drives = read_drives(path)
-    return list(people((drive.participant for drive in drives), str(path)))
+    notes: list[Finding] = []
+    drives = read_drives(path, None, notes)
+    return [*notes, *people((drive.participant for drive in drives), str(path))]
 
 
 def _questionnaire(path: Path, known: Known) -> list[Finding]:
@@ -129,12 +130,11 @@ def _people(path: Path, _known: Known) -> list[Finding]:
         table.fault(row, "", f"{who[row]} occurs twice, first in line {line}")
         for row, line in table.repeated(who)
     )
-    return list(people(who, str(path)))
+    return [*table.notes, *people(who, str(path))]
 
 
 def _exclusions(path: Path, _known: Known) -> list[Finding]:
-    read_exclusions(path)
-    return []
+    return list(read_exclusions(path).notes)
 
 
 def _participants(path: Path, _known: Known) -> list[Finding]:
