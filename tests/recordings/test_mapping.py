@@ -361,6 +361,16 @@ def test_a_suggested_map_is_complete_once_its_questions_are_answered(tmp_path: P
         np.testing.assert_array_equal(read[name], known[name])
 
 
+def test_check_prints_the_suggestion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, _ = laboratory(tmp_path)
+    assert cli.main(["check", str(path), "--suggest-map"]) == 0
+    assert capsys.readouterr().out == suggest_map(path)
+    with pytest.raises(SystemExit) as caught:
+        cli.main(["check", str(path), str(path), "--suggest-map"])
+    assert caught.value.code == 2
+    assert cli.main(["check", str(tmp_path / "none.csv"), "--suggest-map"]) == 1
+
+
 def test_a_map_is_suggested_for_a_master_by_its_name(tmp_path: Path) -> None:
     (tmp_path / "r.csv").write_text("time,pldf.vehicle.s_m,pldf.vehicle.speed_mps,pldf.mode\n")
     text = suggest_map(tmp_path / "r.csv")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -68,6 +71,14 @@ def test_whole_milliseconds_are_the_decimals_that_one_writes(ms: int) -> None:
 )
 def test_units_in_headers(text: str, name: str, unit: str) -> None:
     assert header_of(text) == (name, unit)
+
+
+def test_the_docs_list_every_unit() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "recordings.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| (time|length|speed|acceleration|pedals) \| (.*) \|$", page, re.M))
+    for name, ours in zip(rows, ("s", "m", "m/s", "m/s2", "1"), strict=True):
+        listed = re.sub(r"\(.*\)|since 1970:", "", rows[name]).replace(";", ",")
+        assert [unit.strip() for unit in listed.split(",")] == list(units_of(ours))
 
 
 def test_what_is_no_unit_is_none() -> None:

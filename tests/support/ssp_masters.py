@@ -18,18 +18,27 @@ from fmpy.ssp.ssd import Parameter, ParameterSet, read_ssd
 STEP_S = 0.01
 
 
-def fmpy(package: str, seconds: float) -> list[tuple[float, float]]:
+def handed_over(package: str) -> ParameterSet:
+    """Return the parameter sets of a package: fmpy reads them and forgets them.
+
+    They have to be handed over, with the component's name, and Booleans as numbers (any text counts
+    as true).
+    """
     values = ParameterSet(name="initialValues")
     for component in read_ssd(package).system.elements:
         for binding in component.parameterBindings:
             for one in binding.parameterValues[0].parameters:
-                # It reads the sets of the package and forgets them: they have to be handed over,
-                # with the component's name, and Booleans as numbers (any text counts as true).
                 value = {"true": 1.0, "false": 0.0}.get(one.value, one.value)
                 parameter = Parameter(name=f"{component.name}.{one.name}")
                 parameter.value = value
                 values.parameters.append(parameter)
-    rows = simulate_ssp(package, stop_time=seconds, step_size=STEP_S, parameter_set=values)
+    return values
+
+
+def fmpy(package: str, seconds: float) -> list[tuple[float, float]]:
+    rows = simulate_ssp(
+        package, stop_time=seconds, step_size=STEP_S, parameter_set=handed_over(package)
+    )
     # Its time is that before the step, its values are those after it.
     return list(zip(rows["time"] + STEP_S, rows["vehicle.speed_mps"], strict=True))
 
