@@ -1,6 +1,7 @@
 """Runs a package in an importer, which writes its own kind of result into a folder.
 
-``python master_results.py IMPORTER PACKAGE SECONDS FOLDER``, in a process of its own, as ``ssp_masters`` is.
+``python master_results.py IMPORTER PACKAGE SECONDS FOLDER``, in a process of its own, as
+``ssp_masters`` is.
 """
 
 from __future__ import annotations
