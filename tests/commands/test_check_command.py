@@ -228,3 +228,58 @@ def test_a_study_with_names_says_to_use_codes(tmp_path: Path) -> None:
     (warning,) = checks.of("warning")
     assert "'anna.mueller' looks like the name of a person" in warning.text
     assert "codes such as P01" in warning.way_out
+
+
+def test_analyse_refuses_with_all_errors_and_tells_warnings(
+    tmp_path: Path, capsys: Capture
+) -> None:
+    study = laboratory(tmp_path / "study")
+    recordings = study / "recordings"
+    change(recordings / "P02_A2.csv", lambda r: Recording(rows(r, np.r_[0:400, 430:1000])))
+    assert main(["analyse", str(study)]) == 0
+    assert "warning: " in (said := capsys.readouterr().err)
+    assert "a drop-out of more than 1.5 s" in said
+    change(recordings / "P01_A1.csv", lambda r: with_columns(r, speed_mps=3.6 * r["speed_mps"]))
+    change(recordings / "P01_A2.csv", lambda r: with_columns(r, speed_mps=2.237 * r["speed_mps"]))
+    (recordings / "P02_B2.csv").unlink()
+    assert main(["analyse", str(study)]) == 1
+    said = capsys.readouterr().err
+    assert "P01_A1.csv, speed_mps: " in said and "speed_mps in km/h?" in said
+    assert "P01_A2.csv, speed_mps: " in said and "speed_mps in mph?" in said
+    assert "participant P02 has no drive B2" in said
+
+
+def test_what_is_left_out_is_not_checked(tmp_path: Path, capsys: Capture) -> None:
+    study = laboratory(tmp_path / "study", ("P01", "P02", "P03"))
+    broken = study / "recordings" / "P03_A1.csv"
+    broken.write_text("nothing", encoding="utf-8")
+    assert found(study, capsys=capsys)[0] == 1
+    assert found(study, "--without", "P03", capsys=capsys)[0] == 0
+    (study / "exclusions.csv").write_text("participant,reason\nP03,sick\n", encoding="utf-8")
+    assert found(study, capsys=capsys)[0] == 0
+
+
+def test_a_simulated_study_knows_its_road_and_has_no_finding(
+    tmp_path: Path, capsys: Capture
+) -> None:
+    file = tmp_path / "two.toml"
+    file.write_text(
+        '[participants]\ncount = 2\nseed = 3\n[recordings]\nparticipants = "all"\n'
+        "[drives]\nstep_s = 0.05\n",
+        encoding="utf-8",
+    )
+    assert main(["study", str(file), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
+    capsys.readouterr()
+    status, report = found(tmp_path / "out", capsys=capsys)
+    assert (status, report["counts"]["error"], report["counts"]["warning"]) == (0, 0, 0)
+    qualities = [file["quality"] for file in report["files"] if "quality" in file]
+    assert len(qualities) == 12
+    assert all(quality["coverage"] == pytest.approx(1.0, abs=0.01) for quality in qualities)
+    kinds = {Path(file["file"]).name: file["kind"] for file in report["files"]}
+    assert kinds["study.toml"] == "study file"
+    assert kinds["drives.csv"] == "drives"
+    assert kinds["participants.csv"] == "participants"
+
+
+def rows(recording: Recording, kept: Any) -> dict[str, Any]:
+    return {name: values[kept] for name, values in recording.columns.items()}
