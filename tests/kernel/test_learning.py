@@ -1,10 +1,9 @@
-"""Learning from pedal interventions: what changes, by how much, where, and what never does."""
+"""Learning from pedal interventions: what changes, by how much, and where."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import strategies as hs
 from laboratory import (
     BASE,
     KMH,
@@ -24,18 +23,6 @@ from pldf.kernel.codes import (
     GAS_OVERRIDE,
     OUTCOME_LEARNED,
 )
-
-BENT_ROAD = road(
-    900.0,
-    ((0.0, 100.0 * KMH), (300.0, 60.0 * KMH), (500.0, 80.0 * KMH)),
-    [(120.0, 180.0, 0.008), (600.0, 680.0, 0.012)],
-)
-points = hs.lists(
-    hs.tuples(hs.floats(0.0, 900.0), hs.floats(0.5, 50.0)), min_size=1, max_size=8
-).map(lambda p: bent(*sorted(p)))
-
-
-# What is learned
 
 
 def test_half_of_the_deviation_is_learned_where_the_driver_intervened() -> None:
