@@ -283,12 +283,3 @@ def test_a_simulated_study_knows_its_road_and_has_no_finding(
 
 def rows(recording: Recording, kept: Any) -> dict[str, Any]:
     return {name: values[kept] for name, values in recording.columns.items()}
-
-
-def test_a_first_mapping_file_for_a_recording(tmp_path: Path, capsys: Capture) -> None:
-    path = tmp_path / "drive.csv"
-    path.write_text("Time [s],Speed [km/h]\n0,50\n1,50\n", encoding="utf-8")
-    assert main(["check", "--suggest-map", str(path)]) == 0
-    assert 'speed_mps = { column = "Speed [km/h]", unit = "km/h" }' in capsys.readouterr().out
-    assert main(["check", "--suggest-map", str(path), str(path)]) == 1
-    assert "name one recording" in capsys.readouterr().err

@@ -61,16 +61,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--json", action="store_true", help="print all that was found, for programs"
     )
-    parser.add_argument(
-        "--suggest-map", action="store_true",
-        help="print a first mapping file for the recording PATH instead, to be completed",
-    )  # fmt: skip
 
 
 def run(options: argparse.Namespace) -> int:
     """Print all findings; return 1 if there are errors."""
-    if options.suggest_map:
-        return _suggest(options.paths)
     if options.suggest_map:
         if len(options.paths) > 1:
             options.wrong_usage("--suggest-map takes one recording; others like it use its map")
@@ -96,13 +90,6 @@ def run(options: argparse.Namespace) -> int:
     else:
         _print(checks)
     return 1 if checks.of("error") else 0
-
-
-def _suggest(paths: Sequence[Path]) -> int:
-    if len(paths) > 1:
-        raise ModelError(f"--suggest-map: name one recording; here are {len(paths)} paths")
-    print(suggest_map(paths[0]), end="")
-    return 0
 
 
 def _study(
