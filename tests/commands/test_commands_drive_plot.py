@@ -207,9 +207,16 @@ def test_a_laboratory_recording_needs_the_route(run: Run) -> None:
     write_recording("few.csv", few)
     status, _, err = run("plot", "few.csv")
     assert status == 1
-    assert "few.csv: no column limit_mps, base_mps, profile_mps" in err
+    assert "few.csv: no column limit_mps, base_mps" in err
     assert "--route" in err
-    assert run("plot", "few.csv", "--route", "road.csv")[0] == 0
+    status, _, err = run("plot", "few.csv", "--route", "road.csv")
+    assert status == 0
+    assert "profile_mps, set_speed_offset_mps not recorded, and what the function had" in err
+    status, _, err = run("plot", "few.csv", "--route", "road.csv", "--followed", "base")
+    assert status == 0
+    assert "profile_mps" not in err
+    write_recording("a.csv", sample())
+    assert "--followed needs the road" in run("plot", "a.csv", "--followed", "base")[2]
 
 
 @pytest.mark.parametrize(

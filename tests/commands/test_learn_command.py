@@ -26,7 +26,8 @@ def run(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.
     """Return a function that runs ``pldf learn`` on one recording, in a folder of its own."""
     monkeypatch.chdir(tmp_path)
     recording = tmp_path / "recording.csv"
-    write_recording(recording, sample_recording())
+    whole = sample_recording().columns  # its profile is none of the road's
+    write_recording(recording, Recording({n: v for n, v in whole.items() if n != "profile_mps"}))
     Path("road.csv").write_text(ROAD, encoding="utf-8")
 
     def runner(*arguments: str) -> tuple[int, str]:
@@ -130,6 +131,15 @@ def test_another_history_is_overwritten_by_force_only_and_kept(run: Run, other: 
     assert status == 0 and "a.pldf.replaced-1" in told
     assert Path("a.pldf.replaced-1").read_bytes() == before
     assert len(read_profile("a.pldf").iterations) == 1
+
+
+def test_a_drive_that_followed_another_profile_is_warned_of(run: Run, tmp_path: Path) -> None:
+    write_recording(tmp_path / "recording.csv", sample_recording())
+    status, told = run("--out", "a.pldf")
+    assert status == 0
+    assert "warning: " in told and "recording.csv, profile_mps: up to" in told
+    assert "off the base profile: the drive followed another one" in told
+    assert "--profile-in" in told
 
 
 def test_the_same_result_may_be_written_again(run: Run) -> None:

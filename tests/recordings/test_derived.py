@@ -162,12 +162,15 @@ def test_what_a_function_had_learned_before_is_said_or_stays_unknown(study: Path
     whole = learn_from(recording_of(study, "P001", "B1"), open_route("study"), file="B1.csv")
     (note,) = whole.notes
     assert note.severity == "warning"
-    assert "off the base profile: the drive followed a learned profile" in note.text
+    assert "off the base profile: the drive followed another one" in note.text
     assert "--profile-in" in note.way_out
     (path,) = (study / "profiles").glob("driver-000001_*")
     stored = read_profile(path)
     before = StoredProfile(1, stored.route, stored.base_mps, stored.iterations[:1])
     assert learn_from(recording_of(study, "P001", "B1"), open_route("study"), before).notes == ()
+    (note,) = learn_from(recording_of(study, "P001", "B2"), open_route("study"), before).notes
+    assert "off the newest iteration of the profile named" in note.text
+    assert learn_from(recording_of(study, "P001", "A2"), open_route("study")).notes == ()
 
 
 def test_no_set_speed_at_all_is_a_warning(study: Path) -> None:

@@ -99,5 +99,5 @@ def read_exclusions(path: Path, without: Collection[str] = ()) -> Exclusions:
     table = read_table(path, _FORMAT)
     phases = table.texts.get("phase", [""] * len(table))
     rows = zip(table.texts["participant"], phases, table.texts["reason"], table.lines, strict=True)
-    listed = [Exclusion(who, drive, why, f"{path}, line {at}") for who, drive, why, at in rows]
+    listed = [Exclusion(who, drive, why, f"{path.name}, line {at}") for who, drive, why, at in rows]
     return Exclusions((*listed, *named), tuple(table.notes))

@@ -13,6 +13,7 @@ from typing import Any, Final
 from ..errors import ModelError
 from ..findings import Finding
 from ..function import DrivingFunction
+from ..profiles.store import StoredProfile
 from ..recordings.derived import completed
 from ..recordings.inputs import SUFFIXES
 from ..recordings.mapping import RecordingMap, remembered_map
@@ -170,14 +171,22 @@ class StudyFolder:
         function.prepare(self.route)
         if phase[0] == "A" or all(name in recording for name in _LEARNED):
             return completed(recording, function, str(path))
-        profiles = self._profiles
-        if profiles is None:
+        try:
+            stored = self._followed(participant, phase)
+        except ModelError:
+            if "set_speed_offset_mps" not in recording:
+                raise
+            stored = None  # a profile less in a figure
+        if stored is None:
             return completed(recording, function, str(path), profile_known=False)
-        stored = profiles.followed(participant, phase)
         function.follow(stored)
         whole = completed(recording, function, str(path))
-        text = f"followed iteration {len(stored.iterations)} of its profile in {profiles.folder}"
+        text = f"followed iteration {len(stored.iterations)} of its learned profile"
         return replace(whole, notes=(*whole.notes, Finding("note", str(path), 0, "", text)))
+
+    def _followed(self, participant: str, phase: str) -> StoredProfile | None:
+        """Return the profile as it was before a drive of B; None if there are no profiles."""
+        return self._profiles.followed(participant, phase) if self._profiles else None
 
     @cached_property
     def _profiles(self) -> Profiles | None:

@@ -73,9 +73,9 @@ def run(options: argparse.Namespace) -> None:
     mapping = chosen_map(options)
     present = None if options.force else present_profile(options.out)
     recording = read_recording(options.recording, mapping)
-    tell(recording.notes)
     tell(require_sound(recording, options.recording, route_arrays(route)))
-    learned = learn_from(recording, route, stored, function)
+    learned = learn_from(recording, route, stored, function, options.recording)
+    tell(learned.notes)
     _write(options, learned.profile, present)
     report = explain(learned)
     if options.json:

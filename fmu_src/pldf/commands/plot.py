@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from math import isnan
 from pathlib import Path
 from typing import Final
 
@@ -12,7 +13,6 @@ from ..function import DrivingFunction
 from ..profiles.store import read_profile
 from ..recordings.derived import completed
 from ..recordings.interventions import rates_of
-from ..recordings.mapping import RecordingMap
 from ..recordings.recording import Recording, read_recording
 from ..roads import Road, open_route
 from .shared.mapping import add_map, chosen_map, tell
@@ -23,7 +23,8 @@ EXAMPLE: Final = (
     "  pldf plot out/recordings/P001_A1.csv out/recordings/P001_B2.csv --out compared.png"
 )
 
-_NEEDED: Final = ("limit_mps", "base_mps", "profile_mps", "set_speed_offset_mps")
+_NEEDED: Final = ("limit_mps", "base_mps")
+BASE: Final = "base"
 _COMPARED_MAX: Final = 7  # as many colours can be told apart
 
 
@@ -35,6 +36,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--profile", type=Path, metavar="P.pldf", help="draw the newest state of this profile too"
     )
+    parser.add_argument(
+        "--followed", metavar="P.pldf",
+        help="what the drives followed, for recordings that do not tell: the newest state of this "
+        "profile, or 'base'; without, what is not known is left out",
+    )  # fmt: skip
     add_map(parser)
     add_road(parser, "road driven, for recordings without limits")
     parser.add_argument(
@@ -51,11 +57,10 @@ def run(options: argparse.Namespace) -> None:
     if len(options.recordings) > _COMPARED_MAX:
         options.wrong_usage(f"at most {_COMPARED_MAX} recordings fit into one picture")
     road = chosen_road(options)
-    mapping = chosen_map(options)
-    recordings = [_complete(path, road, mapping) for path in options.recordings]
+    recordings = [_complete(path, road, options) for path in options.recordings]
     named = dict(zip(names_of(options.recordings), recordings, strict=True))
     profile = read_profile(options.profile) if options.profile else None
-    shares = [f"{name} {100 * rates_of(r).combined:.0f} %" for name, r in named.items()]
+    shares = [f"{name} {_share(recording)}" for name, recording in named.items()]
     title = f"Share of the time with interventions: {', '.join(shares)}"
     out = options.out or options.recordings[0].with_suffix(".png")
     save(recorded(named, title, profile), out)
@@ -75,15 +80,25 @@ def names_of(paths: Sequence[Path]) -> list[str]:
     ]
 
 
-def _complete(path: Path, road: Road | None, mapping: RecordingMap | None) -> Recording:
-    """Read a recording; derive what a picture needs and the recording lacks."""
-    recording = read_recording(path, mapping)
-    tell(recording.notes)
+def _complete(path: Path, road: Road | None, options: argparse.Namespace) -> Recording:
+    """Read a recording; derive what a picture needs and the recording lacks, if it is known."""
+    recording = read_recording(path, chosen_map(options))
     missing = [name for name in _NEEDED if name not in recording]
-    if missing and road is None:
-        raise ModelError(
-            f"{path}: no column {', '.join(missing)}; name the route driven with --route"
-        )
+    if road is None and (missing or options.followed):
+        why = f"no column {', '.join(missing)}" if missing else "--followed needs the road"
+        raise ModelError(f"{path}: {why}; name the route driven with --route")
     function = DrivingFunction()
     function.prepare(road.route if road else open_route("study"))
-    return completed(recording, function, str(path))
+    if options.followed not in (None, BASE):
+        function.follow(read_profile(options.followed))
+    whole = completed(recording, function, str(path), profile_known=options.followed is not None)
+    tell(whole.notes)
+    return whole
+
+
+def _share(recording: Recording) -> str:
+    """Return the share of the time with interventions, as far as it is known."""
+    rates = rates_of(recording)
+    if isnan(rates.combined):
+        return f"{100 * rates.pedal:.0f} % by pedals (set speed not known)"
+    return f"{100 * rates.combined:.0f} %"

@@ -32,6 +32,8 @@ _HOWS: Final = {
     "brake_pedal": "standby after driving counts as braked",
     "eligible": "learning was allowed everywhere",
 }
+# What one has to know of the profile that was followed.
+_LEARNED: Final = ("profile_mps", "set_speed_offset_mps")
 _ROUNDING: Final = 1.0 + 1e-6  # what is written as exactly the tolerance is within it
 
 
@@ -72,12 +74,17 @@ def completed(
     columns.setdefault("brake_pedal", (columns["mode"] == STANDBY).astype(np.float64))
     columns.setdefault("eligible", np.ones(len(recording)))
     columns.setdefault("acceleration_mps2", np.gradient(columns["speed_mps"], columns["time_s"]))
-    notes = recording.notes
+    at_signs = 0
     if profile_known:
         columns.setdefault("profile_mps", road.per_node(profile.learned_mps))
         automatic_mps = limit_mps + road.per_cell(profile.offset_mps)
         at_signs = _add_set_speed(columns, automatic_mps, function)
-        notes += tuple(_told(recording, function, file, at_signs))
+    notes = (
+        *recording.notes,
+        *_roads_and_pedals(recording, file),
+        *(_set_speed(recording, function, file, at_signs) if profile_known else ()),
+        *(() if profile_known else _unknown(recording, file)),
+    )
     kept = {name: columns[name] for name in COLUMNS if name in columns}
     return replace(recording, columns=kept, notes=notes)
 
@@ -159,13 +166,27 @@ def _early_from(
     return row if time_s[sign] - time_s[row] <= SIGN_LAG_S * _ROUNDING else sign
 
 
-def _told(
-    recording: Recording, function: DrivingFunction, file: str, at_signs: int
-) -> Iterator[Finding]:
-    """Yield how absent columns came about."""
+def _roads_and_pedals(recording: Recording, file: str) -> Iterator[Finding]:
+    """Yield how absent columns came about that have nothing to do with the set speed."""
     told = [f"{name} ({how})" for name, how in _HOWS.items() if name not in recording]
     if told:
         yield Finding("note", file, 0, "", f"not recorded, so derived: {', '.join(told)}")
+
+
+def _unknown(recording: Recording, file: str) -> Iterator[Finding]:
+    """Yield what stays absent since it is not known what the function had learned."""
+    if absent := [name for name in _LEARNED if name not in recording]:
+        yield Finding(
+            "note", file, 0, "",
+            f"{', '.join(absent)} not recorded, and what the function had learned before is not "
+            "known", "it is left out, not guessed",
+        )  # fmt: skip
+
+
+def _set_speed(
+    recording: Recording, function: DrivingFunction, file: str, at_signs: int
+) -> Iterator[Finding]:
+    """Yield how the offset of the set speed came about."""
     if "set_speed_offset_mps" in recording:
         return
     if "set_speed_mps" not in recording:

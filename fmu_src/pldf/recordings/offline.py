@@ -31,7 +31,9 @@ from .derived import completed
 from .recording import Recording
 
 SAME_MPS = 1e-9
-FOLLOWED_KMH = 1.0  # a profile that differs by more from the base profile was learned
+# A profile recorded that differs by more, on more than this share of the rows, is another one.
+OTHER_PROFILE_KMH = 1.0
+OTHER_PROFILE_SHARE = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,9 +74,8 @@ def learn_from(
     """
     function = function or DrivingFunction()
     function.prepare(route)
-    taken: list[Finding] = []
+    named = stored is not None
     if stored is None:
-        taken += _taken_for_base(recording, function, file)
         base = np.array(function.profile.base_mps)
         stored = StoredProfile(function.record.driver_id, fingerprint(route), base)
     elif stored.route != fingerprint(route):
@@ -93,30 +94,39 @@ def learn_from(
             f"advance on {route.name} (0 to {route.length_m:g} m)"
         )
     iteration = function.learn("learn")
-    return Learned(function, stored.with_iteration(iteration), iteration, (*whole.notes, *taken))
+    notes = (*whole.notes, *_contradicted(recording, function, file, named))
+    return Learned(function, stored.with_iteration(iteration), iteration, notes)
 
 
-def _taken_for_base(
-    recording: Recording, function: DrivingFunction, file: str
+def _contradicted(
+    recording: Recording, function: DrivingFunction, file: str, named: bool
 ) -> Iterator[Finding]:
-    """Yield what speaks against a drive with the base profile, or that nothing tells."""
-    way_out = "name what the drive followed with --profile-in"
+    """Yield what speaks against a drive with the profile that ``function`` follows.
+
+    Args:
+        recording: as it was read.
+        function: that follows a profile.
+        file: of the recording.
+        named: somebody named that profile; else it is the base profile.
+    """
     if "profile_mps" in recording:
-        node_m = np.arange(float(len(function.profile.base_mps)))
-        base = np.interp(recording["s_m"], node_m, np.asarray(function.profile.base_mps))
-        off = KMH_PER_MPS * float(np.max(np.abs(recording["profile_mps"] - base)))
-        if off > FOLLOWED_KMH:
+        profile = np.asarray(function.profile.learned_mps)
+        followed = np.interp(recording["s_m"], np.arange(float(len(profile))), profile)
+        off_kmh = KMH_PER_MPS * np.abs(recording["profile_mps"] - followed)
+        if np.mean(off_kmh > OTHER_PROFILE_KMH) > OTHER_PROFILE_SHARE:
+            taken = "the newest iteration of the profile named" if named else "the base profile"
             yield Finding(
                 "warning", file, 0, "profile_mps",
-                f"up to {off:.1f} km/h off the base profile: the drive followed a learned profile",
-                "it is taken to have followed the base profile, so what was learned before is "
-                "learned as if the driver wished it anew", way_out,
+                f"up to {np.max(off_kmh):.1f} km/h off {taken}: the drive followed another one",
+                "what it followed is learned as if the driver wished it anew",
+                "name what the drive followed with --profile-in",
             )  # fmt: skip
-    elif "set_speed_offset_mps" not in recording:
+    elif not named and "set_speed_offset_mps" not in recording:
         yield Finding(
             "note", file, 0, "",
             "no profile named, so the drive counts as driven with the base profile",
-            "an offset that had been learned before would count as set by the driver", way_out,
+            "an offset that had been learned before would count as set by the driver",
+            "name what the drive followed with --profile-in",
         )  # fmt: skip
 
 

@@ -48,6 +48,7 @@ class DriverShown:
         steps: one intervention explained; None if nothing was learned from ``explained``.
         explained: the first drive learned from.
         acting: the drives recorded in which the driver intervenes.
+        not_known: the drives of which it is not known what the function had learned before.
     """
 
     participant: str
@@ -57,6 +58,7 @@ class DriverShown:
     steps: Steps | None
     explained: str
     acting: tuple[str, ...]
+    not_known: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,7 +211,7 @@ def _driver(
         _require_route(paths[phase], recording, route)
     profile = StoredProfile(0, fingerprint(route), np.array(function.profile.base_mps))
     for taught, seen in known.development().items():
-        if seen in recordings:
+        if seen in recordings and "profile_mps" in recordings[seen]:
             profile = profile.with_iteration(_followed(recordings[seen], profile, taught))
     learned = learn_from(recordings[first], route, function=function)
     return DriverShown(
@@ -220,6 +222,7 @@ def _driver(
         steps=explain_steps(learned),
         explained=first,
         acting=tuple(p for names in study.compared().values() for p in names if p in recordings),
+        not_known=tuple(p for p, recording in recordings.items() if "profile_mps" not in recording),
     )
 
 

@@ -24,6 +24,7 @@ from .. import __version__
 from ..analysis import published
 from ..analysis.statistics import EXACT_PAIRS_MAX
 from ..files.disk import replace_file
+from ..findings import Finding
 from ..kernel.signals import Signal, signals_of
 from ..kernel.state import PldfState
 from ..roads import fingerprint
@@ -154,7 +155,12 @@ def _templates() -> Environment:
         trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
     )  # fmt: skip
     templates.filters.update(
-        minus=_minus, percent=_percent, change=_change, listed=_listed, file_name=_name
+        minus=_minus,
+        percent=_percent,
+        change=_change,
+        listed=_listed,
+        file_name=_name,
+        in_folder=_in_folder,
     )
     return templates
 
@@ -170,6 +176,11 @@ def _name(path: str) -> str:
 
 def _listed(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _in_folder(finding: Finding) -> str:
+    """Return what is told about a file of the study, wherever the study lies."""
+    return str(finding._replace(file=Path(finding.file).name))
 
 
 def _percent(share: float) -> str:
@@ -190,6 +201,7 @@ def _sections(contents: Contents) -> list[Section]:
     words = _words(contents)
     for name, scene in study_figures(contents).items():
         title, caption = (text.format(**words) for text in _FIGURES[name])
+        caption += _not_known(contents, name)
         below = _BELOW.get(name, "")
         sections.append(Section(name, title, Markup(html_of(scene, name)), caption, below))
     if contents.driver is None:
@@ -197,7 +209,20 @@ def _sections(contents: Contents) -> list[Section]:
     else:
         title = f"What became of each intervention of {contents.driver.participant}"
         sections.append(Section("outcomes", title))
+    if contents.analysis.exclusions or contents.analysis.notes:
+        sections.append(Section("left_out", "What was left out, and how the data were read"))
     return [*sections, Section("reproduce", "Reproduce")]
+
+
+def _not_known(contents: Contents, figure: str) -> str:
+    """Return what a figure leaves out and why, to stand behind its caption."""
+    driver = contents.driver
+    if driver is None or not driver.not_known or figure not in ("drives", "development"):
+        return ""
+    return (
+        f" Not known, so left out: the profile followed in {_listed(driver.not_known)}. It was not "
+        "recorded (profile_mps), and there is no learned profile to take it from (--profiles)."
+    )
 
 
 def _words(contents: Contents) -> dict[str, Any]:

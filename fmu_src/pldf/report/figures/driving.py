@@ -29,6 +29,10 @@ from .speeds import (
 _STRIP: Final = 0.045  # height of the set-speed strip, share of the panel
 _BAR_OPACITY: Final = 0.75  # of interventions in lanes, which hide nothing
 _CHANGED_MPS: Final = 1e-6
+_NOT_RECORDED: Final = {
+    "profile_mps": "profile followed",
+    "set_speed_offset_mps": "where the driver set the speed",
+}
 _PEDAL_REACH_MIN: Final = 10.0  # percent
 _PEDAL_TICKS_MAX: Final = 6
 
@@ -54,7 +58,8 @@ def one_drive(recording: Recording, title: str, profile: StoredProfile | None = 
         Band(s_km, -100.0 * brake, none, down, "Brake pedal travel", listed=False),
         zero_line(x),
     )
-    drive = Panel((*_drive(recording, speeds), *_newest(profile)), x, speeds, 3.6)
+    elements = (*_drive(recording, speeds), *_newest(profile))
+    drive = Panel(elements, x, speeds, 3.6, not_known(recording).strip())
     return Scene((drive, Panel(pedals, x, _pedal_axis([recording]), 1.3)), title)
 
 
@@ -88,7 +93,13 @@ def compared(
     return Scene(
         (
             Panel(tuple(speeds), x, speed_axis(recordings.values()), 3.4),
-            Panel(tuple(_lanes(recordings)), x, lanes, 0.4 + 0.22 * len(recordings)),
+            Panel(
+                tuple(_lanes(recordings)),
+                x,
+                lanes,
+                0.4 + 0.22 * len(recordings),
+                _set_speeds_not_known(recordings),
+            ),
             Panel(tuple(pedals), x, _pedal_axis(recordings.values()), 1.2),
         ),
         title,
@@ -98,6 +109,8 @@ def compared(
 def drives(recordings: Mapping[str, Recording], titles: Mapping[str, str], title: str) -> Scene:
     """Return one panel per drive: limit, profiles, speed, interventions shaded.
 
+    What is not known of a drive stands in its title.
+
     Args:
         recordings: complete, by drive, in order of driving.
         titles: what each drive was.
@@ -106,11 +119,23 @@ def drives(recordings: Mapping[str, Recording], titles: Mapping[str, str], title
     x, speeds = distance_of(next(iter(recordings.values()))), speed_axis(recordings.values())
     return Scene(
         tuple(
-            Panel(_drive(recording, speeds), x, speeds, 2.2, f"{name}  {titles[name]}")
+            Panel(
+                _drive(recording, speeds),
+                x,
+                speeds,
+                2.2,
+                f"{name}  {titles[name]}{not_known(recording)}",
+            )
             for name, recording in recordings.items()
         ),
         title,
     )
+
+
+def not_known(recording: Recording) -> str:
+    """Return which parts of a figure are missing since the recording does not tell, in brackets."""
+    absent = [what for name, what in _NOT_RECORDED.items() if name not in recording]
+    return f" (not known: {', '.join(absent)})" if absent else ""
 
 
 def driven_line(number: int, name: str, recording: Recording) -> Line:
@@ -126,8 +151,9 @@ def _stroke(number: int) -> Stroke:
 
 def _drive(recording: Recording, speeds: Axis) -> tuple[Element, ...]:
     """Return limit, base profile, profile followed and speed, with the interventions shaded."""
-    rows = thinned(recording)
-    s_m, base, followed = rows["s_m"], rows["base_mps"], rows["profile_mps"]
+    rows = thinned(recording).columns
+    s_m, base = rows["s_m"], rows["base_mps"]
+    followed = rows.get("profile_mps", base)
     elements: list[Element] = [
         limit_line(recording["s_m"], recording["limit_mps"]),
         base_line(s_m, base),
@@ -177,6 +203,11 @@ def _lanes(recordings: Mapping[str, Recording]) -> list[Element]:
         for (name, fill), boxes in zip(palette.INTERVENTIONS.values(), bars.values(), strict=True)
         if boxes
     ]
+
+
+def _set_speeds_not_known(recordings: Mapping[str, Recording]) -> str:
+    names = [name for name, r in recordings.items() if "set_speed_offset_mps" not in r]
+    return f"not known: where the driver set the speed in {', '.join(names)}" if names else ""
 
 
 def _pedal_lines(number: int, name: str, recording: Recording) -> list[Element]:

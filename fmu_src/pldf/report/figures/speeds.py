@@ -55,7 +55,7 @@ def distance_of(recording: Recording) -> Axis:
 def speed_axis(recordings: Iterable[Recording]) -> Axis:
     """Return a speed axis with all that was driven and allowed, with room below."""
     names = ("limit_mps", "base_mps", "profile_mps", "speed_mps")
-    shown = [(r[name], name) for r in recordings for name in names]
+    shown = [(r[name], name) for r in recordings for name in names if name in r]
     low = KMH_PER_MPS * min(float(np.min(v)) for v, name in shown if name != "limit_mps")
     high = KMH_PER_MPS * max(float(np.max(v)) for v, _ in shown)
     room = high - low
