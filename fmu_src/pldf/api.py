@@ -72,7 +72,8 @@ def learn(
     set_parameters(function.record, parameters or {})
     function.prepare(route)  # refuses parameters out of their range
     for finding in require_sound(recording, "recording", function.route):
-        warnings.warn(str(finding), stacklevel=2)
+        if finding.severity == "warning":
+            warnings.warn(str(finding), stacklevel=2)
     return learn_from(recording, route, profile, function)
 
 

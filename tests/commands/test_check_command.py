@@ -283,3 +283,17 @@ def test_a_simulated_study_knows_its_road_and_has_no_finding(
 
 def rows(recording: Recording, kept: Any) -> dict[str, Any]:
     return {name: values[kept] for name, values in recording.columns.items()}
+
+
+def test_part_of_the_road_is_a_note_of_a_drive_and_a_warning_of_a_study(
+    tmp_path: Path, capsys: Capture
+) -> None:
+    road = tmp_path / "road.csv"
+    road.write_text("s_m,curvature_per_m,speed_limit_mps\n0,0,25\n4000,0,25\n", encoding="utf-8")
+    study = laboratory(tmp_path / "study")
+    _, report = found(study / "recordings" / "P01_A1.csv", "--route", road, capsys=capsys)
+    (note,) = report["findings"]
+    assert note["severity"] == "note" and "covers 50 % of the road" in note["text"]
+    _, report = found(study, "--route", road, capsys=capsys)
+    assert report["counts"]["warning"] > 0
+    assert all("covers 50 %" in w["text"] for w in report["findings"] if w["severity"] == "warning")

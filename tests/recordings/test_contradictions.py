@@ -244,7 +244,7 @@ def test_a_recording_that_begins_before_the_road_and_one_beside_it() -> None:
 
 def test_half_a_drive_says_how_much() -> None:
     finding = only(kept(lambda c: c["s_m"] < 1560.0)(driven()))
-    assert finding.severity == "warning"
+    assert finding.severity == "note"
     assert "covers 52 % of the road: 1 to 1559 m of 3000 m" in finding.text
 
 

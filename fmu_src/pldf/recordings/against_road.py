@@ -12,6 +12,7 @@ from ..kernel.arrays import RouteArrays
 from .quality import cells_of, quality_of, road_length_m
 from .recording import Recording
 
+COVERAGE: Final = "coverage"  # the place of that finding: a note here, a warning in a study
 _BEYOND_M: Final = 50.0  # past either end of the road: a car's braking distance after a drive
 _COVERED: Final = 0.9
 _OTHER_LIMIT_MPS: Final = 0.3  # half of what separates two limits is far more; rounding is less
@@ -42,11 +43,11 @@ def against_road(
     yield from _ends(file, quality.from_m, quality.to_m, length)
     if quality.coverage < _COVERED:
         yield Finding(
-            "warning", file, 0, "s_m",
+            "note", file, 0, COVERAGE,
             f"covers {100 * quality.coverage:.0f} % of the road: {quality.from_m:.0f} to "
             f"{quality.to_m:.0f} m of {length:.0f} m",
             "rates are those of this part, and nothing is learned elsewhere",
-            "was the drive broken off? leave it out or say so in the report",
+            "was the drive broken off? then leave it out, or say so in the report",
         )  # fmt: skip
     if scales_fit:
         yield from _other_limits(recording, file, route)

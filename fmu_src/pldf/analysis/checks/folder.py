@@ -12,6 +12,7 @@ import numpy as np
 
 from ...errors import ModelError
 from ...findings import Finding
+from ...recordings.against_road import COVERAGE
 from ...recordings.mapping import MAP_FILE
 from ...recordings.recording import Recording
 from ...roads import route_arrays
@@ -98,8 +99,7 @@ def _analysed(
         replace(file, participant=drives[path][0], phase=drives[path][1])
         if path in drives else file for path, file in sorted(checked.items())
     ]  # fmt: skip
-    if known.route is None:
-        files = list(_with_half_drives(files))
+    files = list(map(_told_half, files) if known.route else _with_half_drives(files))
     if not study.study_file:  # simulated drivers may well drive the same twice
         files = list(with_copies(files))
     people_of = list(analysis.participants) if analysis else [who for who, _ in drives.values()]
@@ -130,6 +130,14 @@ def _copy(file: CheckedFile, same: CheckedFile) -> Finding:
         "one drive counts as two, and one of them is missing",
         "put the right recording there, or leave this one out",
     )  # fmt: skip
+
+
+def _told_half(file: CheckedFile) -> CheckedFile:
+    """Return the file; that it covers a part of the road only counts more where rates are taken."""
+    findings = (
+        one._replace(severity="warning") if one.place == COVERAGE else one for one in file.findings
+    )
+    return replace(file, findings=tuple(findings))
 
 
 def _with_half_drives(files: Sequence[CheckedFile]) -> Iterator[CheckedFile]:
