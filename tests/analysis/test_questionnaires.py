@@ -195,6 +195,15 @@ def test_a_table_from_a_german_spreadsheet(tmp_path: Path) -> None:
     assert any("cp1252" in note.text or "1252" in note.text for note in found.notes)
 
 
+def test_answers_for_a_system_and_for_one_of_its_drives_are_not_mixed(tmp_path: Path) -> None:
+    drives = laan({"P1,A1": BOXES, "P1,A2": BOXES, "P2,A": BOXES})
+    assert len(read(tmp_path, drives).scores["usefulness"]) == 2
+    told = refusal(tmp_path, drives.replace("P2", "P1"))
+    assert "line 2, participant P1, system: line 4 has the answers for system A as a whole" in told
+    wide = ",".join(f"{item}_{group}" for group in ("A", "A1") for item in LAAN)
+    assert "columns laan_1_A1 and laan_1_A" in refusal(tmp_path, f"participant,{wide}\n")
+
+
 def test_a_questionnaire_without_answers_is_told(tmp_path: Path) -> None:
     for text in (laan({}), laan({"P1,A": ("",) * 9})):
         found = read(tmp_path, text)

@@ -56,6 +56,10 @@ def _faulty_groups(asked: Mapping[str, Asked], group: str) -> Iterator[str]:
         yield (
             f"columns {group} and {wide[0]} both say after which system was asked; keep one of them"
         )
+    whole = {(one.item, one.group): name for name, one in asked.items() if len(one.group) == 1}
+    for name, (item, _, drive) in asked.items():
+        if len(drive) > 1 and (system := whole.get((item, drive[0]))):
+            yield f"columns {name} and {system}, a drive and its whole system; keep one of them"
     if not group and len(wide) < len(asked):
         long = next(name for name, one in asked.items() if not one.group)
         yield (

@@ -13,7 +13,7 @@ from math import nan
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from ...files.tables import Column, Format, Table, read_header, read_table
+from ...files.tables import Column, Fault, Format, Table, read_header, read_table
 from ...findings import Finding
 from .columns import Columns, columns_of
 from .labels import boxes_of, plain
@@ -169,18 +169,23 @@ def _groups(
             text = table.texts[columns.group][row]
             groups[row] = names.systems.get(plain(text), text.upper())
             if not _GROUP.fullmatch(groups[row]):
-                faults.append(
-                    table.fault(
-                        row,
-                        columns.group,
-                        f"{text!r} is {_NO_GROUP}",
-                    )
-                )
+                faults.append(table.fault(row, columns.group, f"{text!r} is {_NO_GROUP}"))
         line = first.setdefault((participant, groups[row]), table.lines[row])
         if line != table.lines[row]:
             faults.append(table.fault(row, "", f"answered in line {line} already"))
     table.refuse(faults)
+    table.refuse(_mixed(table, groups, columns))
     return groups
+
+
+def _mixed(table: Table, groups: Mapping[int, str], columns: Columns) -> Iterator[Fault]:
+    """Yield the drives of those who answered for the system as a whole, too."""
+    people = table.texts[columns.participant]
+    whole = {(people[row], group): table.lines[row] for row, group in groups.items()}
+    for row, group in groups.items():
+        if len(group) > 1 and (line := whole.get((people[row], group[0]))):
+            text = f"line {line} has the answers for system {group[0]} as a whole; keep one of them"
+            yield table.fault(row, columns.group, text)
 
 
 def _scored(
