@@ -178,6 +178,38 @@ def test_a_position_that_falls_is_no_drive_of_this_road() -> None:
     assert "s_m falls" in only(needed).text
 
 
+def test_a_speed_with_the_other_sign() -> None:
+    needed = {n: v for n, v in driven().items() if n in ("time_s", "s_m", "speed_mps", "mode")}
+    assert "speed_mps is negative" in only(scaled("speed_mps", by=-1.0)(needed)).text
+
+
+def test_limits_of_a_town_in_kmh_are_told_by_the_speed_alone() -> None:
+    columns = driven()
+    slow = scaled("time_s", by=2.0)(scaled("speed_mps", by=0.5)(columns))
+    names = ("time_s", "s_m", "speed_mps", "mode", "limit_mps")
+    town = {n: slow[n] for n in names} | {"limit_mps": np.full(len(slow["time_s"]), 50.0)}
+    finding = only(town, with_road=False)
+    assert (finding.severity, finding.place) == ("error", "limit_mps")
+    assert found({**town, "limit_mps": town["limit_mps"] / 3.6}, with_road=False) == []
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("seed", range(40))
+def test_whatever_the_numbers_are_there_is_an_answer(seed: int) -> None:
+    chance = np.random.default_rng(seed)
+    rows = int(chance.integers(2, 40))
+    scale = 10.0 ** chance.uniform(-3.0, 6.0)
+    columns = {n: scale * chance.normal(0.0, 1.0, rows) for n in driven()}
+    columns["time_s"] = np.cumsum(chance.exponential(scale, rows) + 1e-6)
+    columns["mode"] = chance.integers(0, 5, rows).astype(np.float64)
+    if seed % 4 == 0:
+        columns["limit_mps"][:] = 0.0
+    if seed % 5 == 0:
+        columns["s_m"][:], columns["speed_mps"][:] = 10.0, 0.0
+    for with_road in (True, False):
+        assert all(one.text and one.file == "drive.csv" for one in found(columns, with_road))
+
+
 def test_way_and_speed_in_one_wrong_unit_are_too_fast_for_a_car() -> None:
     columns = scaled("s_m", "speed_mps", by=5.0)(driven())
     needed = {n: columns[n] for n in ("time_s", "s_m", "speed_mps", "mode")}

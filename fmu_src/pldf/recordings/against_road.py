@@ -88,7 +88,7 @@ def _other_limits(recording: Recording, file: str, route: RouteArrays) -> Iterat
         + (f", but would be {abs(best)} m {'further on' if best > 0 else 'back'}" if fits else ""),
         "what is learned lies at the wrong place, or on another road",
         f"add {best} m to s_m in a mapping file" if fits
-        else "check that this is the road driven, and the unit of limit_mps",
+        else "check that this is the road driven; temporary limits of a scenario are in order",
     )  # fmt: skip
 
 

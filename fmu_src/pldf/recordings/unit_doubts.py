@@ -29,7 +29,8 @@ _SAME_UNIT: Final = 0.04  # how near a factor must be to that of a unit
 _AGREES: Final = 0.05  # a tachometer may be off so far
 _SPREAD_MAX: Final = 0.1
 _SPEED_MAX_MPS: Final = 100.0  # 360 km/h
-_LIMIT_MAX_MPS: Final = 45.0  # 162 km/h; no public road has more
+_LIMIT_MAX_MPS: Final = 65.0  # 234 km/h; above what is written for a road without a limit
+_LIMIT_USED: Final = 0.4  # of a limit above 30 m/s some part of a drive is faster than that
 _DRIVE_MIN_M: Final = 100.0  # a shorter "drive" is one in km
 _TOGETHER: Final = frozenset(
     (speed, other)
@@ -71,6 +72,13 @@ def _speed_and_position(recording: Recording, file: str) -> Iterator[Finding]:
         return
     ratio = float(np.median(ratios))
     if abs(ratio - 1.0) <= _AGREES:
+        return
+    if ratio < 0.0 and np.median(recording["speed_mps"]) < 0.0:
+        yield Finding(
+            "error", file, 0, "speed_mps", "speed_mps is negative while s_m rises",
+            "nothing is learned from a car that goes backwards",
+            "is the axis the other way? then factor = -1 for speed_mps in a mapping file",
+        )  # fmt: skip
         return
     if ratio < 0.0:
         yield Finding(
@@ -163,12 +171,23 @@ def _speeds_and_limit(
         return
     if route is not None and "limit_mps" in recording:
         yield from _against_limit(recording, "limit_mps", limit, file)
-    elif (highest := float(np.max(limit))) > _LIMIT_MAX_MPS:
-        yield _wrong_unit(file, "limit_mps", f"up to {highest:.4g} m/s", "km/h", "a legal limit")
+    elif float(np.max(limit)) > _LIMIT_MAX_MPS or _never_used(recording, limit):
+        text = f"up to {np.max(limit):.4g} m/s, driven at up to {recording['speed_mps'].max():.4g}"
+        yield _wrong_unit(file, "limit_mps", text, "km/h", "a legal limit")
         return
     for name in ("set_speed_mps", "profile_mps", "base_mps"):
         if name in recording:
             yield from _against_limit(recording, name, limit, file)
+
+
+def _never_used(recording: Recording, limit: FloatArray) -> bool:
+    """Tell whether limits that no town has are never driven at, nor the set speed near them."""
+    used = max(
+        float(np.max(recording[name] / np.maximum(limit, 1.0)))
+        for name in ("speed_mps", "set_speed_mps")
+        if name in recording
+    )
+    return bool(np.min(limit) >= 30.0 - 1e-9 and used < _LIMIT_USED)
 
 
 def _limit(recording: Recording, route: RouteArrays | None) -> FloatArray | None:
