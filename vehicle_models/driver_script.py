@@ -107,6 +107,6 @@ def _unfit_values(table: Table) -> Iterator[Fault]:
     for row, (control, value) in enumerate(zip(controls, values, strict=True)):
         word = words[int(control)]
         if word in PEDALS and isnan(value):
-            yield table.fault(row, "value", f"'' is not a number from 0 to 1; {word} needs one")
+            yield table.fault(row, "value", f"missing; {word} needs a number from 0 to 1")
         elif word not in PEDALS and not (isnan(value) or value == 1.0):
             yield table.fault(row, "value", f"'{value:g}' for the lever; leave it empty")

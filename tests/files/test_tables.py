@@ -134,7 +134,9 @@ def test_rows_can_be_left_out_whatever_else_they_hold() -> None:
         (NUMBERS, "a,b,c\n1;5,2,0\n", "line 2, a: '1;5' is not a number"),
         (NUMBERS, 'a,b,c\n1,"2,0\n3,4,1\n', "line 2: quotes that do not fit"),
         (NUMBERS, 'a,b,c\n1,2,0\n1,"2"2,0\n', "line 3: quotes that do not fit"),
-        (MIXED, GOOD.replace("ON", "On", 1), "line 2, who ann, mode: 'On' is not one of OFF, ON"),
+        (MIXED, "who x_m\n", "no comma, semicolon or tab in the header 'who x_m'; a mixture has"),
+        (MIXED, GOOD.replace("ON", "Onn", 1), "line 2, who ann, mode: 'Onn' is not one of OFF, ON"),
+        (MIXED, GOOD.replace("ON", "1", 1), "line 2, who ann, mode: '1' is not one of OFF, ON"),
         (MIXED, GOOD.replace("1.5", "9e300"), "who ann, x_m: '9e300' is not a number from -1e+300"),
         (MIXED, GOOD.replace("1.5", "x" * 99), f"x_m: '{'x' * 40}' is not a number"),
         (MIXED, GOOD.replace(",9,", ",10,"), "count: '10' is not a whole number from 0 to 9"),
@@ -166,16 +168,16 @@ NAMES = "who,x_m,count,on,mode\n# {0}\n{0},1.5,2,0,ON\n"
 @pytest.mark.parametrize(
     ("name", "encoding", "told"),
     [
-        ("M\u00fcller", "utf-16", ""),
-        ("M\u00fcller", "utf-16-le", ""),
-        ("M\u00fcller", "utf-16-be", ""),
-        ("M\u00fcller", "utf-32", ""),
-        ("M\u00fcller", "utf-32-be", ""),
+        ("M\u00fcller", "utf-16", "read as UTF-16"),
+        ("M\u00fcller", "utf-16-le", "read as UTF-16"),
+        ("M\u00fcller", "utf-16-be", "read as UTF-16"),
+        ("M\u00fcller", "utf-32", "read as UTF-32"),
+        ("M\u00fcller", "utf-32-be", "read as UTF-32"),
         ("M\u00fcller", "utf-8-sig", ""),
-        ("M\u00fcller", "latin-1", "t.csv, line 2: not UTF-8; read as Windows-1252: 'M\u00fcller'"),
+        ("M\u00fcller", "latin-1", "t.csv, line 2: not UTF-8: read as Windows-1252 (Latin-1)"),
         ("M\u00fcller", "cp1252", "save the file as UTF-8"),
-        ("\u674e\u56db", "gb2312", "read as GB2312: '\u674e\u56db' stands there"),
-        ("\u4f50\u85e4", "shift_jis", "read as Shift_JIS: '\u4f50\u85e4' stands there"),
+        ("\u674e\u56db", "gb2312", "read as GB 18030 (GB 2312), which gives '\u674e\u56db'"),
+        ("\u4f50\u85e4", "shift_jis", "read as Shift JIS, which gives '\u4f50\u85e4'"),
     ],
 )
 def test_every_encoding_is_read_and_guesses_are_told(name: str, encoding: str, told: str) -> None:
@@ -187,14 +189,18 @@ def test_every_encoding_is_read_and_guesses_are_told(name: str, encoding: str, t
 
 
 def test_letters_of_utf_7_are_told() -> None:
-    (note,) = parse(NAMES.format("M\u00fcller").encode("utf-7")).notes
-    assert "line 2: '+APw-' may be a letter in UTF-7" in str(note)
+    table = parse(NAMES.format("M\u00fcller").encode("utf-7"))
+    (note,) = table.notes
+    assert "line 2: not UTF-8: read as UTF-7, which gives 'M\u00fcller'; in ASCII it is" in str(
+        note
+    )
+    assert table.texts["who"] == ["M\u00fcller"]
 
 
 def test_what_is_no_text_is_refused_with_its_line() -> None:
     assert "line 3: a zero byte, which is no text" in str(refusal(GOOD.replace("ben", "b\0n")))
     cut = GOOD.encode("utf-16")[:-1]
-    assert "line 4: not UTF-16-LE, as it began" in str(refusal(cut))
+    assert "line 4: not UTF-16 text, as it began" in str(refusal(cut))
 
 
 SIZES = Format(
@@ -218,12 +224,7 @@ SIZES = Format(
         ("who\tx_m\ty_m\na\t1.5\t2\nb\t3\t4\n", [1.5, 3.0], [2.0, 4.0]),
         ("who|x_m|y_m\na|1.5|2\nb|3|4\n", [1.5, 3.0], [2.0, 4.0]),
         ('who,x_m,y_m\na,"1,5",2\nb,3,"4,25"\n', [1.5, 3.0], [2.0, 4.25]),
-        ('who,x_m,y_m\na,"1,234.5","1,000"\nb,3,4\n', [1234.5, 3.0], [1000.0, 4.0]),
-        ("who;x_m;y_m\na;1.234,5;1.000\nb;3;4\n", [1234.5, 3.0], [1000.0, 4.0]),
-        ("who;x_m;y_m\na;1.234.567;0,5\nb;3;4\n", [1234567.0, 3.0], [0.5, 4.0]),
-        ("who,x_m,y_m\na,1'234.5,12\u202f345\nb,3,4\n", [1234.5, 3.0], [12345.0, 4.0]),
         ("who,x_m,y_m\na,\u22121.5,2\nb,3,4\n", [-1.5, 3.0], [2.0, 4.0]),
-        ("who;x_m;y_m\na;1,234;2\nb;3;4\n", [1.234, 3.0], [2.0, 4.0]),
     ],
 )
 def test_numbers_of_all_countries(text: str, x_m: list[float], y_m: list[float]) -> None:
@@ -242,9 +243,15 @@ def test_numbers_of_all_countries(text: str, x_m: list[float], y_m: list[float])
         'who,x_m\na,"1,234"\nb,2\n',
         "who;x_m\na;1,234.5\nb;2,5\n",
         'who,x_m\na,"1,23,4"\nb,2\n',
+        'who,x_m\na,"1,234.5"\nb,3\n',
+        "who;x_m\na;1.234,5\nb;3\n",
+        "who;x_m\na;1.234.567\nb;0,5\n",
+        "who,x_m\na,1'234.5\nb,3\n",
+        "who,x_m\na,12\u202f345\nb,3\n",
+        "who;x_m\na;1,234\nb;2\n",
     ],
 )
-def test_commas_that_may_mean_either_are_no_numbers(text: str) -> None:
+def test_what_may_separate_thousands_is_refused(text: str) -> None:
     assert "line 2, x_m" in str(refusal(text, SIZES)) or "line 3, x_m" in str(refusal(text, SIZES))
 
 
@@ -253,7 +260,7 @@ def test_what_stands_for_a_missing_number(cell: str) -> None:
     table = parse(f"who,x_m,maybe_s\na,1,{cell}\nb,2,3\n", SIZES)
     np.testing.assert_array_equal(table.numbers["maybe_s"], [np.nan, 3.0])
     assert [str(note) for note in table.notes] == (
-        [f"t.csv, maybe_s: {cell} is read as missing, in 1 cells"] if "9" in cell else []
+        [f"t.csv, maybe_s: {cell} (1): read as missing"] if cell else []
     )
     if "9" not in cell:
         assert "line 2, who a, x_m" in str(
@@ -312,9 +319,11 @@ texts = (
     .map(str.strip)
     .filter(bool)
 )
+# What stands for a missing value is refused where none may be missing.
+no_code = {-99.0, -999.0, -9999.0}.isdisjoint
 cells = {
     "who": texts,
-    "x_m": hs.floats(-1e300, 1e300),
+    "x_m": hs.floats(-1e300, 1e300).filter(lambda x: no_code({x})),
     "count": hs.integers(0, 9),
     "on": hs.booleans(),
     "mode": hs.sampled_from(["OFF", "ON"]),
@@ -341,8 +350,8 @@ def test_what_is_written_reads_back_to_the_same_bits(rows: list[tuple]) -> None:
 @given(
     hs.lists(
         hs.tuples(
-            hs.floats(allow_nan=False, allow_infinity=False),
-            hs.integers(-(2**53), 2**53),
+            hs.floats(allow_nan=False, allow_infinity=False).filter(lambda x: no_code({x})),
+            hs.integers(-(2**53), 2**53).filter(lambda x: no_code({x})),
             hs.booleans(),
         ),
         min_size=1,
@@ -377,7 +386,10 @@ def test_every_corruption_of_a_single_cell_is_found_where_it_is(
     (fault,) = refusal(lead + "\n".join(map(",".join, lines)), form).faults
     assert fault.line == row + 1 + lead.count("\n")
     assert fault.place.split(", ")[-1] == column.name
-    assert fault.text == f"{lines[row][at].strip()!r} is not {column.description}"
+    cell = lines[row][at].strip()
+    why = "; it stands for a missing value: fill it in, or leave the row out"
+    named = cell in ("nan", "NA")
+    assert fault.text == f"{cell!r} is not {column.description}" + why * named
 
 
 @pytest.mark.parametrize("head", [b"", b"a,b,c\n", b"who,x_m,count,on,mode\n"])

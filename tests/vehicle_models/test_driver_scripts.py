@@ -54,8 +54,9 @@ def test_order_does_not_matter_and_the_stronger_pedal_wins(tmp_path: Path) -> No
         ("1,km,gas,0.2,1", "line 3, unit: 'km' is not one of s, m"),
         ("1,s,clutch,0.2,1", "line 3, control: 'clutch' is not one of gas, brake, resume"),
         ("1,s,gas,1.2,1", "line 3, value: '1.2' is not a number from 0 to 1"),
-        ("1,s,gas,,1", "line 3, value: '' is not a number"),
-        ("1,s,gas,nan,1", "line 3, value: '' is not a number from 0 to 1"),
+        ("1,s,gas,,1", "line 3, value: missing; gas needs a number from 0 to 1"),
+        ("1,s,gas,NA,1", "line 3, value: missing; gas needs a number from 0 to 1"),
+        ("1,s,gas,inf,1", "line 3, value: 'inf' is not a number"),
         ("1,s,up,0.5,1", "line 3, value: '0.5' for the lever; leave it empty"),
         ("1,s,gas,0.2,0", "line 3, duration_s: '0' is not a number from 0.001"),
         ("1,s,gas", "line 3: 3 values for 5 columns"),
@@ -72,7 +73,7 @@ def test_unusable_script_files(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match=r"bad\.csv: cannot be read"):
         read_script(path)
     path.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(ModelError, match="line 1: not UTF-16-LE, as it began"):
+    with pytest.raises(ModelError, match="line 1: not UTF-16 text, as it began"):
         read_script(path)
     path.write_text("at,unit,control,value\n1,s,up,\n")
     with pytest.raises(ModelError, match=r"line 1: missing column duration_s"):

@@ -1,23 +1,17 @@
 """The reader of all tables.
 
-What every table may have: any encoding, separator and line ends (``text``, ``records``), decimal
-commas and thousands apart (``numbers``), lines that begin with ``#``, empty lines, quoted cells
-(with commas and line breaks in them), blanks around cells, columns in any order.
-
-Reading takes four steps: bytes to text, text to records, the header (``_positions``), cells to
-values (``_convert``). All that is wrong with the cells is found before a file is refused. What is
-read otherwise than it stands there, and what was guessed, is in the notes.
+Reading takes three steps: bytes to records (``content``), the header (``_positions``), cells to
+values (``cells``). All that is wrong with the cells is found before a file is refused; what was
+read otherwise than it is written is told in the notes.
 """
 
 from __future__ import annotations
 
-import io
 import os
 import re
-from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
-from math import nan
 from pathlib import Path
 from typing import Final
 
@@ -27,11 +21,11 @@ from ...errors import ModelError
 from ...findings import Finding
 from ...kernel.arrays import FloatArray
 from ..disk import reason
+from .cells import allowed, values_of, why_wrong, with_points
+from .content import Content, content_of
 from .declared import Column, Fault, Format, TableError
 from .names import meant_names, misspelt
-from .numbers import MISSING, marks_of, numbers_of
-from .records import Comment, Record, cells_in, records, separator_of
-from .text import decoded
+from .told import how_written, rows_in_comments
 from .writer import plain_text
 
 # Says of the cells of a row, by column, whether nothing of it is wanted.
@@ -39,7 +33,6 @@ LeftOut = Callable[[Mapping[str, str]], bool]
 
 _CELL_MAX: Final = 40  # characters of a wrong cell that an error repeats
 _HEADER_MAX: Final = 120  # the same for names of columns
-_FLAGS: Final = {"true": "1", "false": "0"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +47,8 @@ class Table:
         lines: line in which each row begins.
         numbers: columns of numbers, flags (0 or 1) and words (their places), float64.
         texts: columns of text, without blanks around.
-        notes: what was read otherwise than it stands there, or guessed.
+        notes: what was read otherwise than it is written: encoding, separator, decimal commas,
+            missing values, numbers for words.
     """
 
     path: Path
@@ -120,12 +114,10 @@ def read_header(path: str | os.PathLike[str]) -> tuple[str, ...]:
         ModelError: the file cannot be read.
         TableError: it has no header.
     """
-    path = Path(path)
-    lines, separator, _ = _lines(_content(path), path)
-    header = next(records(lines, path, separator, []), None)
-    if header is None:
-        raise TableError(path, [Fault(0, "", "no header")])
-    return tuple(name.strip() for name in header.cells)
+    content = content_of(_content(path), Path(path))
+    if not content.line:
+        raise TableError(Path(path), [Fault(0, "", "no header")])
+    return tuple(content.header)
 
 
 def _content(path: str | os.PathLike[str]) -> bytes:
@@ -137,89 +129,102 @@ def _content(path: str | os.PathLike[str]) -> bytes:
 
 def parse_table(data: bytes, path: Path, form: Format, left_out: LeftOut | None = None) -> Table:
     """Return the table that ``data``, the content of ``path``, holds; as ``read_table``."""
-    lines, separator, notes = _lines(data, path)
-    comments: list[Comment] = []
-    rows = records(lines, path, separator, comments)
-    line, header = next(rows, Record(0, []))
-    if not line:
+    content = content_of(data, path)
+    if not content.line:
         raise TableError(path, [Fault(0, "", f"no header; {_has(form)}")])
-    table = Table(path, form, line, comments=tuple(one.text for one in comments), notes=notes)
-    at = _positions(table, header)
-    quick = not left_out and len(at) == len(header)
-    if not (quick and _fill_with_numbers(table, lines, separator, at)):
-        body = list(rows)
-        if left_out:
-            body = [record for record in body if not left_out(_cells(record.cells, at))]
-        _fill(table, body, separator, at, len(header))
-        _tell_rows_in_comments(table, comments, separator, len(header))
+    table = Table(path, form, content.line, comments=tuple(content.comments))
+    at = _positions(table, content.header)
+    if left_out or not _fill_fast(table, content, at):
+        _fill(table, content, at, left_out)
     table.refuse(_too_few(table))
+    read = [name for name in form.names if name in table]
+    table.notes[:0] = how_written(content, read, table.texts)
+    table.notes.extend(rows_in_comments(content))
     return table
 
 
-def _fill_with_numbers(
-    table: Table, lines: Sequence[str], separator: str, at: Mapping[str, int]
-) -> bool:
-    """Fill a table that holds nothing but numbers, in half the time; False if there is more to it.
+def _fill_fast(table: Table, content: Content, at: Mapping[str, int]) -> bool:
+    """Fill a table of plain rows with NumPy's parser of numbers; False if there is more to it.
 
-    NumPy's parser takes nothing that ``_fill`` would refuse, and reads the same bits. Comments or
-    empty lines between the rows are left to ``_fill`` as well.
+    That parser takes nothing that ``_fill`` would refuse, and reads the same bits. Comments, empty
+    lines or quotes are left to ``_fill`` as well, and so is all that is told.
     """
+    body, separator, width = content.body, content.separator, len(content.header)
     columns = [column for column in table.form.columns if column.name in at]
-    body = lines[table.header_line :]
-    if not body or body[0].isspace() or any(c.blank or c.kind in ("word", "text") for c in columns):
+    numeric = [c for c in columns if c.kind not in ("word", "text")]
+    plain = body and numeric and not content.quoted and not any(c.blank for c in numeric)
+    if not plain or any(line.count(separator) != width - 1 or line[0] == "#" for line in body):
         return False
     try:
-        cells = np.loadtxt(body, delimiter=separator, comments=None, ndmin=2)
+        at_numbers = [at[c.name] for c in numeric]
+        cells = np.loadtxt(body, delimiter=separator, comments=None, usecols=at_numbers, ndmin=2)
     except ValueError:
         return False
-    if cells.shape != (len(body), len(at)):
+    numbers = {c.name: np.ascontiguousarray(cells[:, k]) for k, c in enumerate(numeric)}
+    if len(cells) != len(body) or not all(allowed(c, numbers[c.name]).all() for c in numeric):
         return False
-    values = {c.name: np.ascontiguousarray(cells[:, at[c.name]]) for c in columns}
-    if not all(c.allows(values[c.name]).all() for c in columns):
-        return False
-    table.lines.extend(range(table.header_line + 1, len(lines) + 1))
-    table.numbers.update(values)
+    table.lines.extend(range(content.body_line, content.body_line + len(body)))
+    faults: list[Fault] = []
+    for column in columns:
+        if column.name in numbers:
+            table.numbers[column.name] = numbers[column.name]
+        else:
+            place = at[column.name]
+            faults += _convert(table, column, [row.split(separator)[place] for row in body])
+    table.refuse(faults)
     return True
 
 
-def _fill(
-    table: Table, body: Sequence[Record], separator: str, at: Mapping[str, int], width: int
-) -> None:
-    """Fill ``table`` with the records of ``body``; refuse it with all that is wrong with them."""
-    ragged = [
-        Fault(line, "", f"{len(row)} values for {width} columns")
-        for line, row in body
-        if len(row) != width
-    ]
-    whole = [record for record in body if len(record.cells) == width]
-    table.lines.extend(record.line for record in whole)
-    cells = list(zip(*(row for _, row in whole), strict=True)) or [()] * width
-    columns = [column for column in table.form.columns if column.name in at]
-    numeric = (cells[at[c.name]] for c in columns if c.kind in ("number", "whole"))
-    decimal = _decimal_mark(table, list(chain(*numeric)), separator)
-    wrong = [_convert(table, c, cells[at[c.name]], decimal) for c in columns]
-    table.refuse(chain(ragged, *wrong))
+def _fill(table: Table, content: Content, at: Mapping[str, int], left_out: LeftOut | None) -> None:
+    """Fill ``table`` with the records of ``content``; refuse it with all that is wrong."""
+    width, places = len(content.header), list(at.values())
+    rows: list[list[str]] = []
+    faults: list[Fault] = []
+    empty = long = 0
+    may_be_empty = all(c.blank for c in table.form.columns if c.name in at)
+    for line, row in content.records():
+        if left_out and left_out(_cells(row, at)):
+            continue
+        if len(row) > width and not any(map(str.strip, row[width:])):
+            del row[width:]  # some programs end every line with a separator
+            long += 1
+        if len(row) != width:
+            faults.append(Fault(line, "", _ragged(content, row, width)))
+        elif not may_be_empty and not any(map(str.strip, row)):
+            empty += 1
+        else:
+            table.lines.append(line)
+            rows.append([row[place] for place in places])
+    columns = zip(*rows, strict=True) if rows else ((),) * len(places)
+    cells: dict[str, Sequence[str]] = dict(zip(at, columns, strict=True))
+    faults += _convert_all(table, cells)
+    table.refuse(faults)
+    if empty:
+        table.note(0, "", f"{empty} rows without any value passed over")
+    if long:
+        table.note(0, "", f"{long} rows have more cells than the header; these are empty")
 
 
-def _decimal_mark(table: Table, cells: Sequence[str], separator: str) -> str:
-    marks = marks_of(cells, separator)
-    if marks.example and marks.decimal:
-        (value,) = numbers_of([marks.example], marks.decimal).tolist()
-        comma = "decimal commas" if marks.decimal == "," else "commas between thousands"
-        table.note(0, "", f"{comma}: {marks.example} is read as {value:.10g}")
-    return marks.decimal
+def _ragged(content: Content, row: Sequence[str], width: int) -> str:
+    text = f"{len(row)} values for {width} columns"
+    if content.separator == "," and len(row) == 2 * width:
+        text += "; with decimal commas, separate columns by semicolons"
+    return text
 
 
-def _tell_rows_in_comments(
-    table: Table, comments: Sequence[Comment], separator: str, width: int
-) -> None:
-    """Tell of lines with # that have as many cells as a row: somebody may be called #7."""
-    rows = [c for c in comments if c.line > table.header_line and width > 1]
-    rows = [c for c in rows if cells_in(c.text, separator) == width]
-    if rows:
-        more = f" ({len(rows)} lines like it)" if len(rows) > 1 else ""
-        told = f"begins with # and is passed over, though it has {width} cells{more}"
-        table.note(rows[0].line, "", told, "it counts nowhere; quote its first cell if it should")
+def _convert_all(table: Table, cells: dict[str, Sequence[str]]) -> list[Fault]:
+    """Put all columns into ``table``; return all cells that are not what they should be."""
+    kinds = {column.name: column.kind for column in table.form.columns}
+    numeric = {name: cells[name] for name in cells if kinds[name] not in ("word", "text")}
+    pointed, example, doubt = with_points(numeric)
+    if doubt:
+        return [table.fault(doubt.line, doubt.place, doubt.text)]
+    if example:
+        read = example.replace(",", ".")
+        table.note(0, "", f"decimal commas: {example} is read as {float(read):.10g}")
+    cells.update(pointed)
+    columns = (column for column in table.form.columns if column.name in cells)
+    return list(chain(*[_convert(table, column, cells[column.name]) for column in columns]))
 
 
 def _too_few(table: Table) -> Iterator[Fault]:
@@ -234,25 +239,21 @@ def _has(form: Format) -> str:
     return f"a {form.name} has the columns {form.header}"
 
 
-def _lines(data: bytes, path: Path) -> tuple[list[str], str, list[Finding]]:
-    """Return the lines, what separates their cells, and what was guessed."""
-    text, notes = decoded(data, path)
-    lines = list(io.StringIO(text, newline=None))
-    return lines, separator_of(lines), notes
-
-
 def _positions(table: Table, header: Sequence[str]) -> dict[str, int]:
     """Return where each known column that is there stands."""
     form = table.form
-    meant = meant_names([name.strip() for name in header], form.names)
+    meant = meant_names(header, form.names)
     for title, name in meant.items():
         table.note(table.header_line, name, f"the column {title[:_CELL_MAX]!r} is read as {name}")
-    names = [meant.get(name.strip(), name.strip()) for name in header]
-    unknown = [name for name in names if name not in form.names]
+    names = [meant.get(name, name) for name in header]
+    # R writes the numbers of the rows into a first column without a name.
+    unknown = [name for name in names if name and name not in form.names]
     missing = [c.name for c in form.columns if c.needed and c.name not in names]
     twice = [name for name in form.names if names.count(name) > 1]
     wrong = (("missing", missing), ("repeated", twice), ("unknown", unknown * form.closed))
     told = [f"{what} column {', '.join(which)[:_HEADER_MAX]}" for what, which in wrong if which]
+    if missing and len(names) == 1:
+        told.append(f"no comma, semicolon or tab in the header {names[0][:_CELL_MAX]!r}")
     if told:
         table.refuse([Fault(table.header_line, "", f"{'; '.join(told)}; {_has(form)}")])
     for title, name in misspelt(unknown, [n for n in form.names if n not in names]).items():
@@ -265,48 +266,27 @@ def _cells(row: Sequence[str], at: Mapping[str, int]) -> dict[str, str]:
     return {name: row[place].strip() if place < len(row) else "" for name, place in at.items()}
 
 
-def _convert(table: Table, column: Column, cells: Sequence[str], decimal: str) -> list[Fault]:
+def _convert(table: Table, column: Column, cells: Sequence[str]) -> list[Fault]:
     """Put a column into ``table``; return the cells that are not what they should be."""
     if column.kind == "text":
         texts = table.texts[column.name] = [plain_text(cell).strip() for cell in cells]
         fits = re.compile(column.pattern or r"(?s:.+)").fullmatch
         wrong = [row for row, text in enumerate(texts) if not fits(text)]
-        missing: Collection[str] = ("",)
+        reasons = [""] * len(wrong)
     else:
-        missing = MISSING if column.blank else ()
-        values = table.numbers[column.name] = _values(column, cells, decimal, missing)
-        wrong = np.flatnonzero(~column.allows(values)).tolist()
-        _tell_codes(table, column, [cells[row].strip() for row in wrong])
+        values = values_of(column, cells)
+        table.numbers[column.name], wrong = values.numbers, values.wrong
+        for text in values.told:
+            table.note(0, column.name, text)
+        numbers = values.numbers[wrong].tolist()
+        reasons = [
+            why_wrong(column, cells[row].strip(), number)
+            for row, number in zip(wrong, numbers, strict=True)
+        ]
     return [
-        table.fault(row, column.name, f"{cell[:_CELL_MAX]!r} is not {column.description}")
-        for row, cell in ((row, cells[row].strip()) for row in wrong)
-        if not (column.blank and cell.lower() in missing)
+        table.fault(row, column.name, f"{cell[:_CELL_MAX]!r} is not {column.description}{why}")
+        for row, cell, why in (
+            (r, cells[r].strip(), why) for r, why in zip(wrong, reasons, strict=True)
+        )
+        if cell or not column.blank
     ]
-
-
-def _values(
-    column: Column, cells: Sequence[str], decimal: str, missing: Collection[str]
-) -> FloatArray:
-    """Return the values of ``cells``: numbers, flags, or places of words; NaN for others."""
-    if column.kind == "word":
-        places = {word: float(place) for place, word in enumerate(column.words)}
-        codes = np.array([places.get(cell.strip(), nan) for cell in cells], dtype=np.float64)
-        if column.coded and np.isnan(codes).any():
-            numbers = numbers_of(cells, decimal)
-            known = np.isin(numbers, range(len(column.words)))
-            codes = np.where(np.isnan(codes) & known, numbers, codes)
-        return codes
-    if column.kind == "flag":
-        cells = [_FLAGS.get(cell.strip().lower(), cell) for cell in cells]
-    values = numbers_of(cells, decimal)
-    if missing:
-        values[[cell.strip().lower() in missing for cell in cells]] = nan
-    return values
-
-
-def _tell_codes(table: Table, column: Column, cells: Sequence[str]) -> None:
-    """Tell of numbers that were taken for missing ones."""
-    codes = [cell for cell in cells if column.blank and cell[:1] == "-" and cell in MISSING]
-    if codes:
-        told = f"{codes[0]} is read as missing, in {len(codes)} cells"
-        table.note(0, column.name, told)
