@@ -186,3 +186,22 @@ def test_an_exclusion_of_nobody_and_one_without_a_reason(
     told = capsys.readouterr().err
     for wrong in ("line 2, participant P1, reason", "line 3", "line 4"):
         assert wrong in told
+
+
+def test_files_and_drives_that_count_nowhere_are_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = recordings(tmp_path)
+    (path / "P5_A1.xlsx").write_bytes(b"PK")
+    (path / ".DS_Store").write_bytes(b"")
+    (path / "P1_A4.csv").write_bytes((path / "P1_A1.csv").read_bytes())
+    told = [str(note) for note in analyse(StudyFolder(tmp_path)).notes]
+    assert len(told) == 2
+    assert "P5_A1.xlsx: not read: no recording ends in .xlsx" in told[0]
+    assert "A4 are none of the study's drives, A1, A2, A3, B1, B2, B3" in told[1]
+
+    only = tmp_path / "rates"
+    only.mkdir()
+    table(only)
+    assert main(["analyse", str(only), "--report", str(only / "report.html")]) == 0
+    assert "no road was named, so the report shows the study road" in capsys.readouterr().err

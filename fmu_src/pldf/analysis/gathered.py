@@ -67,9 +67,22 @@ def gather(study: StudyFolder, reading: Reading) -> Gathered:
     else:
         _read_recordings(study, found, reading)
     found.notes += (*study.exclusions.notes, *study.exclusions.idle(found.met))
+    found.notes += [*study.others(), *_apart(study, found)]
     found.problems = brought_together(found.problems)
     found.notes = brought_together(found.notes)
     return found
+
+
+def _apart(study: StudyFolder, found: Gathered) -> Iterator[Finding]:
+    """Yield drives that are none of the study's."""
+    own = [phase.name for phase in study.order()]
+    apart = sorted({phase for _, phase in found.driven if phase not in own})
+    if apart:
+        yield Finding(
+            "warning", str(found.source), 0, "",
+            f"{', '.join(apart)} are none of the study's drives, {', '.join(own)}",
+            "their means are in phases.csv, but they are in no comparison of A and B",
+        )  # fmt: skip
 
 
 def _read_table(study: StudyFolder, found: Gathered) -> None:

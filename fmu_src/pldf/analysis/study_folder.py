@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -151,8 +151,21 @@ class StudyFolder:
 
     def files(self) -> list[Path]:
         """Return all files of recordings in order of their names, those left out included."""
-        every = sorted((self.folder / "recordings").glob("*.*"))
-        return [path for path in every if path.suffix.lower() in SUFFIXES]
+        return [path for path in self._entries if path.suffix.lower() in SUFFIXES]
+
+    def others(self) -> Iterator[Finding]:
+        """Yield the files among the recordings that are not read, whatever they are."""
+        for path in self._entries:
+            if path.suffix.lower() not in SUFFIXES:
+                yield Finding(
+                    "warning", str(path), 0, "", f"not read: no recording ends in {path.suffix}",
+                    "it counts nowhere", f"save it as one of {', '.join(SUFFIXES)}",
+                )  # fmt: skip
+
+    @property
+    def _entries(self) -> list[Path]:
+        found = sorted((self.folder / "recordings").glob("*.*"))
+        return [path for path in found if not path.name.startswith(".")]
 
     def read(self, path: Path) -> Recording:
         """Read one of the recordings, with all columns that can be known.

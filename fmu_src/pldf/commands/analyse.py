@@ -107,6 +107,7 @@ def _show(
     from ..report.contents import collect  # noqa: PLC0415 - slow to import
 
     contents = collect(analysis, study, options.driver, checks)
+    tell(note for note in contents.analysis.notes if note not in analysis.notes)
     if options.report:
         from ..report.page import write_report  # noqa: PLC0415
 

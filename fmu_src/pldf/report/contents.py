@@ -16,6 +16,7 @@ from ..analysis.long_run import Columns, read_long_run
 from ..analysis.study_folder import StudyFolder
 from ..errors import ModelError
 from ..files.tables import read_table
+from ..findings import Finding
 from ..function import DrivingFunction
 from ..kernel.parameters import PlannerParameters
 from ..kernel.signals import signals_of
@@ -120,6 +121,8 @@ def collect(
     route = study.route or _route_of(study)
     function = _function(parameters.get("pldf", {}))
     shown = _choose(analysis, study, driver)
+    if shown is None and study.route is None and not study.study_file:
+        analysis = replace(analysis, notes=(*analysis.notes, _road_assumed(study)))
     return Contents(
         analysis=analysis,
         title=str(study.study_file.get("title", f"Study {folder.resolve().name}")),
@@ -131,6 +134,16 @@ def collect(
         participants=_parameter_ranges(folder / "participants.csv"),
         checks=checks,
     )
+
+
+def _road_assumed(study: StudyFolder) -> Finding:
+    """Return what has to be said if neither a road was named nor recordings show which it was."""
+    return Finding(
+        "warning", str(study.folder), 0, "",
+        "no road was named, so the report shows the study road",
+        "limits and base profile in it are of another road if the drives were elsewhere",
+        "name the road with --route",
+    )  # fmt: skip
 
 
 def _route_of(study: StudyFolder) -> Route:
