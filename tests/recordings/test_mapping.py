@@ -361,6 +361,17 @@ def test_a_suggested_map_is_complete_once_its_questions_are_answered(tmp_path: P
         np.testing.assert_array_equal(read[name], known[name])
 
 
+def test_check_knows_the_result_of_a_master_for_a_recording(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its columns are those of the FMU: profile_store is no item of a questionnaire."""
+    header = "Time,vehicle.s_m,vehicle.speed_mps,mode,set_speed_offset_mps,profile_store"
+    rows = [f"{k / 10},{2 * k},20,2,0," for k in range(50)]
+    (tmp_path / "pldf_1.csv").write_text("\n".join([header, *rows]) + "\n")
+    assert cli.main(["check", str(tmp_path / "pldf_1.csv")]) == 0
+    assert "the map libcosim" in capsys.readouterr().out
+
+
 def test_check_prints_the_suggestion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, _ = laboratory(tmp_path)
     assert cli.main(["check", str(path), "--suggest-map"]) == 0

@@ -14,9 +14,7 @@ from ..kernel.arrays import FloatArray
 _DAY_S: Final = 86400.0
 _HALF_DAY_S: Final = 43200.0
 _HOLE: Final = 1.5  # a step of stamps this many times as long as usual is no rounding, but a hole
-_COARSE: Final = (
-    0.05  # share of samples with the stamp of the one before, from which all are coarse
-)
+_COARSE: Final = 0.05  # share of samples with a stamp that is no new one, from which all are coarse
 
 
 def seconds_of_dates(texts: Sequence[str]) -> FloatArray:

@@ -16,6 +16,7 @@ from ...recordings.inputs import SUFFIXES
 from ...roads.csv_file import ROUTE
 from ...study.drive_row import DRIVES
 from ...study.participants_file import PARTICIPANTS
+from ..questionnaires.scales import asked_by
 
 Kind = Literal[
     "road", "recording", "questionnaire", "drives", "participants", "people",
@@ -36,7 +37,6 @@ _FORMATS: Final[dict[Kind, Format]] = {
     "participants": PARTICIPANTS,
     "driver script": SCRIPT,
 }
-_ITEMS: Final = ("laan_", "profile_")
 _FITS: Final = 0.5  # share of the needed columns that tells what a table is
 _MAP_TABLES: Final = frozenset(("recording", "mode", "eligible", "questionnaire"))
 _TABLE_SUFFIXES: Final = (".csv", ".tsv", ".txt", "")
@@ -85,7 +85,7 @@ def _kind_of_table(path: Path) -> Kind:
         names = read_header(path)
     except ModelError:
         return "questionnaire" if _called_questionnaire(path) else "recording"
-    if any(name.lower().startswith(_ITEMS) for name in names) and "s_m" not in names:
+    if any(map(asked_by, names)) and "s_m" not in names:
         return "questionnaire"
     shares = {kind: _share_of(form, names) for kind, form in _FORMATS.items()}
     best = max(shares, key=lambda kind: shares[kind])
