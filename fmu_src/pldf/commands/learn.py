@@ -26,8 +26,8 @@ from .shared.road import add_road, required_road
 from .shared.settings import add_settings, apply_settings
 
 EXAMPLE: Final = (
-    "pldf learn --route study --recording out/recordings/P001_B1.csv --out b1.pldf\n"
-    "  pldf learn --route study --recording b2.csv --profile-in b1.pldf --out b2.pldf --json"
+    "pldf learn --route study --recording out/recordings/P001_A2.csv --out a2.pldf\n"
+    "  pldf learn --route study --recording b1.csv --profile-in a2.pldf --out b1.pldf --json"
 )
 
 
