@@ -40,7 +40,9 @@ class ScriptedDriver(Instance[DriverState]):
         if self.record.kind == SCRIPT:
             name = self.texts.script_file
             path = Path(name) if name else packed_script(self.record.script_id)
-            script = script_arrays(read_script(path))
+            events = read_script(path)
+            self.tell(events.notes)
+            script = script_arrays(events)
         self.attach(cast(Arrays, (*wish, *script)))
         driver_start(self.record)
 
@@ -63,7 +65,9 @@ class ScriptedDriver(Instance[DriverState]):
             self._script = views(ScriptArrays(*arrays[count:]))
 
     def _planned_wish(self) -> WishArrays:
-        route = route_arrays(chosen_route(self.record.route_id, self.texts.route_file))
+        chosen = chosen_route(self.record.route_id, self.texts.route_file)
+        self.tell(chosen.notes)
+        route = route_arrays(chosen)
         wish = zeros(WishArrays, len(route.limit_mps))
         work = zeros(Work, len(route.limit_mps))
         prepare_wish(self.record, views(route), views(wish), views(work))

@@ -10,6 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from pldf.errors import ModelError
 from pldf.files.tables import Column, Fault, Format, Table, read_table
+from pldf.findings import Finding
 
 from .script_kernel import (
     AT_POSITION,
@@ -64,6 +65,16 @@ class Event(NamedTuple):
     duration_s: float
 
 
+class Script(list[Event]):
+    """The events of a file, in its order.
+
+    Attributes:
+        notes: how the file was read.
+    """
+
+    notes: tuple[Finding, ...] = ()
+
+
 def packed_script(script_id: int) -> Path:
     """Return the file of a packed script; ModelError lists the known ones."""
     if not 0 <= script_id < len(PACKED):
@@ -72,7 +83,7 @@ def packed_script(script_id: int) -> Path:
     return SCRIPTS / PACKED[script_id]
 
 
-def read_script(path: Path) -> list[Event]:
+def read_script(path: Path) -> Script:
     """Read a script's events in the order of the file.
 
     Raises:
@@ -82,7 +93,7 @@ def read_script(path: Path) -> list[Event]:
     table.refuse(_unfit_values(table))
     units, controls = list(UNITS.values()), list(CONTROLS.values())
     rows = zip(*(table.numbers[name].tolist() for name in COLUMNS), strict=True)
-    return [
+    script = Script(
         Event(
             at=at,
             unit=units[int(unit)],
@@ -91,7 +102,9 @@ def read_script(path: Path) -> list[Event]:
             duration_s=duration_s,
         )
         for at, unit, control, value, duration_s in rows
-    ]
+    )
+    script.notes = tuple(table.notes)
+    return script
 
 
 def script_arrays(events: list[Event]) -> ScriptArrays:

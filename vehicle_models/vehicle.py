@@ -43,6 +43,7 @@ class LongitudinalVehicle(Instance[VehicleState]):
         grade = np.zeros(1)
         if self.record.grade_from_route:
             route = chosen_route(self.record.route_id, self.texts.route_file)
+            self.tell(route.notes)
             grade = np.array(route_arrays(route).grade)
         self.attach((grade,))
         vehicle_start(self.record, self._grade)

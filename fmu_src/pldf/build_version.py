@@ -23,6 +23,7 @@ _DECIDING: Final = {
         "kernel/*.py",
         "roads/*.py",
         "roads/data/*",
+        "files/encodings.py",
         "files/tables/*.py",
         "function.py",
         "instance.py",

@@ -101,6 +101,7 @@ class DrivingFunction(Instance[PldfState]):
     def initialize(self) -> None:
         """Read route and profile, plan, and make the outputs valid."""
         route = chosen_route(self.record.route_id, self.texts.route_file)
+        self.tell(route.notes)
         self.prepare(route)
         self.follow(self._load(fingerprint(route)))
         self.refresh()

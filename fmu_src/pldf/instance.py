@@ -6,7 +6,7 @@ co-simulation and the in-process study see nothing but this class.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Generic, Literal, TypeVar, cast
 
@@ -14,6 +14,7 @@ import numpy as np
 
 from . import snapshot
 from .errors import ModelError
+from .findings import Finding
 from .kernel.arrays import FloatArray, Floats
 from .kernel.signals import signals_of
 
@@ -69,6 +70,11 @@ class Instance(Generic[RecordT]):
     def report(self, level: Level, text: str) -> None:
         """Add a message for the user."""
         self.messages.append(Message(level, text))
+
+    def tell(self, findings: Iterable[Finding]) -> None:
+        """Report how a file of the user was read."""
+        for finding in findings:
+            self.report("warning" if finding.severity == "warning" else "info", str(finding))
 
     def check_parameters(self) -> None:
         """Raise ModelError for the first numeric parameter outside its declared range."""

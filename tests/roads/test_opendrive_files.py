@@ -134,3 +134,61 @@ def test_another_xml_is_refused(tmp_path: Path) -> None:
     path.write_text("<osm/>")
     with pytest.raises(ModelError, match="line 1: <osm> where <OpenDRIVE> should be"):
         read_route(path)
+
+
+PLACE = '<?xml version="1.0" encoding="{0}"?>\n<OpenDRIVE><header name="{1}"/>{2}</OpenDRIVE>'
+
+
+@pytest.mark.parametrize(
+    ("declared", "written", "name"),
+    [
+        ("GB2312", "gb2312", "测试路"),
+        ("gb2312", "gbk", "朱镕基路"),  # a letter that GB 2312 lacks and GBK has
+        ("GBK", "gbk", "朱镕基路"),
+        ("Shift_JIS", "cp932", "髙橋通り"),  # the same with Shift JIS
+        ("EUC-JP", "euc_jp", "道路"),
+        ("windows-1252", "cp1252", "Straße"),
+        ("UTF-16", "utf-16", "Straße"),
+        ("utf-16", "utf-16-le", "Straße"),
+    ],
+)
+def test_roads_are_read_in_the_encoding_that_they_declare(
+    tmp_path: Path, declared: str, written: str, name: str
+) -> None:
+    path = tmp_path / "town.xodr"
+    path.write_bytes(PLACE.format(declared, name, straight("1")).encode(written))
+    route = read_route(path)
+    assert (route.name, route.length_m, route.notes) == (name, 100.0, ())
+
+
+@pytest.mark.parametrize(
+    ("declared", "written"),
+    [("UTF-16", "utf-8"), ("utf-32", "utf-8"), ("GB2312", "utf-8-sig"), ("UTF16", "utf-8-sig")],
+)
+def test_a_declaration_that_is_not_true_is_told(
+    tmp_path: Path, declared: str, written: str
+) -> None:
+    path = tmp_path / "town.xodr"
+    path.write_bytes(PLACE.format(declared, "Straße", straight("1")).encode(written))
+    route = read_route(path)
+    (note,) = route.notes
+    assert route.name == "Straße"
+    assert str(note).endswith(f"line 1: declares {declared} and is in UTF-8, as which it was read")
+
+
+@pytest.mark.parametrize(
+    ("declared", "message"),
+    [
+        ("undefined", "line 1: not UNDEFINED, which the file seems to be; save it as UTF-8"),
+        ("u2f-8", "line 1: unknown encoding 'u2f-8'; save the file as UTF-8"),
+        ("rot13", "line 1: unknown encoding 'rot13'"),
+        ("Shift_JIS", "line 2: not SHIFT_JIS, which the file seems to be"),
+    ],
+)
+def test_a_declaration_that_cannot_be_followed_is_refused(
+    tmp_path: Path, declared: str, message: str
+) -> None:
+    path = tmp_path / "town.xodr"
+    path.write_bytes(PLACE.format(declared, "Stra\xdfe\x81\xff", straight("1")).encode("latin-1"))
+    with pytest.raises(ModelError, match=message):
+        read_route(path)

@@ -104,3 +104,14 @@ def test_a_binary_file_is_refused(path: Path) -> None:
     path.write_bytes(b"\x80\x04\x95\0\0\0" * 9)
     with pytest.raises(ModelError, match="line 1: a zero byte, which is no text"):
         read_route(path)
+
+
+def test_how_a_route_was_read_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "road.csv"
+    path.write_text('"s_m";"curvature_per_m";"speed_limit_mps"\n0;0,0;13,8889\n900;0;13,8889\n')
+    route = read_route(path)
+    assert (route.length_m, route.speed_limit_mps.tolist()) == (900.0, [13.8889, 13.8889])
+    assert [note.text for note in route.notes] == [
+        "semicolons separate the columns",
+        "decimal commas: 0,0 is read as 0",
+    ]

@@ -9,6 +9,7 @@ from driver_watch import LEVER, PEDALS, STEP_S, driver, first, presses, watch
 from pldf.errors import ModelError
 
 from vehicle_models.driver_script import CONTROLS, PACKED, packed_script, read_script
+from vehicle_models.driver_state import PREFERENCE
 
 
 def script(folder: Path, *lines: str) -> str:
@@ -91,3 +92,20 @@ def test_packed_scripts() -> None:
         assert len(read_script(packed_script(script_id))) > 3
     with pytest.raises(ModelError, match="script_id 9 is unknown; packed scripts are 0"):
         driver(kind=1, script_id=9)
+
+
+def test_how_script_and_route_were_read_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "script.csv"
+    path.write_text("at;unit;control;value;duration_s\n1,5;S;Gas;0,25;1,0\n2;m;up;NA;1\n")
+    assert read_script(path)[0].value == 0.25
+    someone = driver(script_file=str(path), kind=1)
+    told = [message.text for message in someone.messages]
+    assert {message.level for message in someone.messages} == {"info"}
+    assert f"{path}: decimal commas: 1,5 is read as 1.5" in told
+    assert f"{path}, value: NA (1): read as missing" in told
+    assert f"{path}, control: read without regard to capitals: Gas" in told
+    road = tmp_path / "road.csv"
+    text = "# Stra\xdfe\ns_m\tcurvature_per_m\tspeed_limit_mps\n0\t0\t20\n900\t0\t20\n"
+    road.write_bytes(text.encode("cp1252"))
+    someone = driver(route_file=str(road), kind=PREFERENCE)
+    assert any("tabs separate the columns" in message.text for message in someone.messages)

@@ -18,6 +18,7 @@ from vehicle_models.driver_script import (
 from vehicle_models.script_kernel import AT_POSITION, BRAKE, GAS, RESUME
 
 from ..cosim.prepared import SUFFIX, write_prepared_script
+from .shared.mapping import tell
 
 EXAMPLE: Final = "pldf script my_drive.csv --export my_drive.prepared"
 
@@ -45,6 +46,7 @@ def run(options: argparse.Namespace) -> None:
     if options.file.isdigit() and not path.exists():
         path = packed_script(int(options.file))
     events = read_script(path)
+    tell(events.notes)
     print(f"script       {path}")
     print("\n".join(_summary(events)))
     if options.export is not None:

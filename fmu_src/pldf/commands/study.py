@@ -24,6 +24,7 @@ from .shared.coupling import (
     chosen_fmus,
     print_warnings,
 )
+from .shared.mapping import tell
 from .shared.progress import progress_bar
 from .shared.road import default_limit_mps
 from .shared.settings import split_settings
@@ -81,6 +82,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Drive what is missing of a study; print where to look."""
     study = _study(options)
+    tell(study.notes)
     if (options.fmu and options.scheduler) or (options.scheduler and study.through == "fmus"):
         options.refuse("FMUs drive on this machine only, not with --scheduler")
     if min(options.jobs, len(study.participants)) > 1 and not options.scheduler:

@@ -49,7 +49,7 @@ def parse_route_csv(data: bytes, path: Path) -> Route:
     if fault is not None:
         row, text = fault
         table.refuse([table.fault(row, "", text)])
-    return Route(name=path.stem, has_line="x_m" in table, **knots)
+    return Route(name=path.stem, has_line="x_m" in table, notes=tuple(table.notes), **knots)
 
 
 def write_route_csv(route: Route, path: Path | str) -> None:

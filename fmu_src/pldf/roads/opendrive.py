@@ -20,6 +20,7 @@ from typing import Any, Final, TypeVar
 import numpy as np
 
 from ..errors import ModelError
+from ..findings import Finding
 from ..kernel.arrays import FloatArray
 from .chain import Leg, Network
 from .geometry import Cubic, Geometry, LinearCurvature, Pose, param_poly3, poly3
@@ -66,7 +67,8 @@ def parse_opendrive(
     Raises:
         ModelError: with file, line, road and way out.
     """
-    root = parse_xml(data, "OpenDRIVE", path)
+    notes: list[Finding] = []
+    root = parse_xml(data, "OpenDRIVE", path, notes)
     pieces: list[Piece] = []
     offset_m = 0.0
     for leg in Network(root, Place(path)).chain(start_road):
@@ -78,7 +80,7 @@ def parse_opendrive(
     name = header.attributes.get("name", "").strip() if header is not None else ""
     s_m, curvature, limit, grade, x_m, y_m = _join(pieces)
     try:
-        return Route(name or path.stem, s_m, curvature, limit, grade, x_m, y_m)
+        return Route(name or path.stem, s_m, curvature, limit, grade, x_m, y_m, notes=tuple(notes))
     except ModelError as error:
         raise ModelError(f"{path}: {error}") from None
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelError
+from ..findings import Finding
 from ..kernel.arrays import FloatArray, RouteArrays
 from ..kernel.units import KMH_PER_MPS
 
@@ -41,6 +42,7 @@ class Route:
     x_m: FloatArray  # east, linear between knots; 0 when the source has no line
     y_m: FloatArray  # north
     has_line: bool = True
+    notes: tuple[Finding, ...] = ()  # how its file was read
 
     def __post_init__(self) -> None:
         fault = first_fault(self.knots)

@@ -16,7 +16,12 @@ from xml.parsers import expat
 
 from ..errors import ModelError
 from ..files.encodings import encoding_of
+from ..findings import Finding
 
+_WIDE: Final = re.compile(r"(?i)utf[-_]?(16|32)")
+_UTF_8: Final = re.compile(r"(?i)utf[-_]?8")
+# Programs declare the older set and write letters of the one that contains it.
+_LARGER: Final = {"gb2312": "gb18030", "gbk": "gb18030", "shift_jis": "cp932"}
 # OpenDRIVE 1.8 is nine elements deep; tools put some of their own into userData.
 _DEPTH_MAX: Final = 64
 _DECLARED: Final = re.compile(rb"""<\?xml [^>]*?encoding\s*=\s*["']([\w.:-]+)""", re.ASCII)
@@ -72,15 +77,21 @@ class Place:
         return value
 
 
-def parse_xml(data: bytes, root: str, path: Path) -> Element:
+def parse_xml(data: bytes, root: str, path: Path, notes: list[Finding]) -> Element:
     """Return the root element, which must be called ``root``.
 
     A byte order mark, comments or any other text before the XML declaration is skipped.
 
+    Args:
+        data: the content of the file.
+        root: name of the element that holds all others.
+        path: of the file.
+        notes: a declaration that is not true is added to them.
+
     Raises:
         ModelError: with file and line.
     """
-    text, skipped_lines = _text(data, root, path)
+    text, skipped_lines = _text(data, root, path, notes)
     top = Element("", {}, 0)
     parser = _parser(top, skipped_lines, path)
     try:
@@ -96,7 +107,7 @@ def parse_xml(data: bytes, root: str, path: Path) -> Element:
     return element
 
 
-def _text(data: bytes, root: str, path: Path) -> tuple[str, int]:
+def _text(data: bytes, root: str, path: Path, notes: list[Finding]) -> tuple[str, int]:
     """Return the text from the XML declaration on, and how many lines were before it.
 
     It is in the encoding that the bytes show, else in the one that they declare: the parser itself
@@ -104,20 +115,27 @@ def _text(data: bytes, root: str, path: Path) -> tuple[str, int]:
     """
     encoding, mark = encoding_of(data)
     data = data.removeprefix(mark)
-    skipped = 0
+    named, skipped = encoding, 0
     if encoding == "utf-8":
         start = _start(data, b"<?xml ", f"<{root}".encode())
         skipped, data = data.count(b"\n", 0, start), data[start:]
         declared = _DECLARED.match(data)
-        encoding = declared[1].decode() if declared and not mark else encoding
+        named = declared[1].decode() if declared else encoding
+        if _WIDE.match(named) or (mark and not _UTF_8.match(named)):
+            # Nobody could have read the declaration if it were true.
+            told = f"declares {named} and is in UTF-8, as which it was read"
+            notes.append(Finding("note", str(path), skipped + 1, "", told))
+        else:
+            encoding = _LARGER.get(named.lower(), named)
     try:
         text = data.decode(encoding)
     except LookupError:
         told = f"unknown encoding {encoding!r}; save the file as UTF-8, and declare that"
         raise ModelError(f"{path}, line {skipped + 1}: {told}") from None
-    except UnicodeDecodeError as error:
-        line = skipped + data.count(b"\n", 0, error.start) + 1
-        told = f"not {encoding.upper()}, which the file seems to be; save it as UTF-8"
+    except UnicodeError as error:
+        start = error.start if isinstance(error, UnicodeDecodeError) else 0
+        line = skipped + data.count(b"\n", 0, start) + 1
+        told = f"not {named.upper()}, which the file seems to be; save it as UTF-8"
         raise ModelError(f"{path}, line {line}: {told}") from None
     start = _start(text, "<?xml ", f"<{root}")
     return text[start:], skipped + text.count("\n", 0, start)

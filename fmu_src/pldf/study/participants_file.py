@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from ..files.tables import Cell, Column, Format, read_table, table_csv
+from ..findings import Finding
 from ..kernel.signals import Signal
 from .participants import DRIVER_SIGNALS, Participant
 from .phases import SEED_MAX
@@ -57,16 +58,22 @@ def participants_csv(participants: Sequence[Participant]) -> bytes:
     return table_csv(columns)
 
 
-def read_participants(path: Path) -> tuple[Participant, ...]:
+def read_participants(path: Path, notes: list[Finding] | None = None) -> tuple[Participant, ...]:
     """Read explicit participants.
 
     Needed is the column ``seed``. Without the column ``participant`` they are numbered in the order
     of the lines; parameters without a column keep the driver model's defaults.
 
+    Args:
+        path: the file.
+        notes: how it was read is added to them.
+
     Raises:
         ModelError: naming file, line, column and value of what cannot be used.
     """
     table = read_table(path, PARTICIPANTS)
+    if notes is not None:
+        notes += table.notes
     ids = table.texts.get("participant") or [f"P{n + 1:03d}" for n in range(len(table))]
     table.refuse(
         table.fault(row, "participant", f"{ids[row]} occurs twice, first in line {line}")

@@ -11,6 +11,7 @@ from typing import Any, Final
 from vehicle_models.vehicle_state import VehicleState
 
 from ..errors import ModelError
+from ..findings import Finding
 from ..kernel.signals import Signal, signals_of
 from ..kernel.state import PldfState
 from ..roads import Road, open_road
@@ -44,6 +45,7 @@ class Study:
         through: what drives, unless the command says otherwise: "kernels" or "fmus".
         out: where the results go.
         source: the file's content, with the changes asked for.
+        notes: how the road and the list of participants were read.
     """
 
     title: str
@@ -52,6 +54,7 @@ class Study:
     through: str
     out: Path
     source: str
+    notes: tuple[Finding, ...] = ()
 
 
 def study_path(name: str) -> Path:
@@ -109,7 +112,8 @@ def read_study(path: Path, changes: Mapping[Key, Any] | None = None) -> Study:
     """
     file = TomlFile(path, changes)
     tables = file.read(StudyTables)
-    people = _participants(file, tables)
+    notes: list[Finding] = []
+    people = _participants(file, tables, notes)
     settings = StudySettings(
         road=_road(file, tables),
         phases=_phases(file, tables),
@@ -126,6 +130,7 @@ def read_study(path: Path, changes: Mapping[Key, Any] | None = None) -> Study:
         through=tables.drives.through,
         out=Path(tables.output or f"out/{path.stem}"),
         source=file.text,
+        notes=(*settings.road.route.notes, *notes),
     )
 
 
@@ -216,12 +221,14 @@ def _recorded(file: TomlFile, tables: StudyTables, known: list[str]) -> frozense
     return frozenset(names)
 
 
-def _participants(file: TomlFile, tables: StudyTables) -> tuple[Participant, ...]:
+def _participants(
+    file: TomlFile, tables: StudyTables, notes: list[Finding]
+) -> tuple[Participant, ...]:
     """Return those of a file, the one driver who is described, or people who are drawn."""
     table, given = tables.participants, file.table.get("participants", {})
     if table.file:
         _refuse(file, ("count", "seed", "first"), ("driver", "distribution"), "participants.file")
-        return read_participants(file.path.parent / table.file)
+        return read_participants(file.path.parent / table.file, notes)
     if tables.driver is not None:
         _refuse(file, (), ("distribution",), "a driver who is described")
         if given.get("count", 1) != 1:

@@ -101,6 +101,7 @@ def _road(path: Path, known: Known) -> list[Finding]:
     route = read_route(path, start_road=known.start_road, default_limit_mps=known.default_limit_mps)
     facts = route_facts(route)
     return [
+        *route.notes,
         Finding(
             "note", str(path), 0, "",
             f"a road of {route.length_m:.0f} m, {len(facts.limits)} limits, "
@@ -138,13 +139,13 @@ def _exclusions(path: Path, _known: Known) -> list[Finding]:
 
 
 def _participants(path: Path, _known: Known) -> list[Finding]:
-    read_participants(path)
-    return []
+    notes: list[Finding] = []
+    read_participants(path, notes)
+    return notes
 
 
 def _script(path: Path, _known: Known) -> list[Finding]:
-    read_script(path)
-    return []
+    return list(read_script(path).notes)
 
 
 def _profile(path: Path, _known: Known) -> list[Finding]:
@@ -156,7 +157,7 @@ def _profile(path: Path, _known: Known) -> list[Finding]:
 def _study_file(path: Path, _known: Known) -> list[Finding]:
     study = read_study(path)
     text = f"a study of {len(study.participants)} participants: {study.title}"
-    return [Finding("note", str(path), 0, "", text)]
+    return [*study.notes, Finding("note", str(path), 0, "", text)]
 
 
 def _map(path: Path, _known: Known) -> list[Finding]:

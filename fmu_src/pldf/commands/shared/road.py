@@ -7,6 +7,7 @@ import math
 
 from ...kernel.units import KMH_PER_MPS
 from ...roads import Road, open_road
+from .mapping import tell
 
 _LIMIT_MAX_KMH = 300.0
 
@@ -57,9 +58,11 @@ def chosen_road(options: argparse.Namespace) -> Road | None:
     """
     if options.road is None:
         return None
-    return open_road(
+    road = open_road(
         options.road, start_road=options.start_road, default_limit_mps=default_limit_mps(options)
     )
+    tell(road.route.notes)
+    return road
 
 
 def required_road(options: argparse.Namespace) -> Road:

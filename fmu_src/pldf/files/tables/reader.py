@@ -252,7 +252,7 @@ def _positions(table: Table, header: Sequence[str]) -> dict[str, int]:
     twice = [name for name in form.names if names.count(name) > 1]
     wrong = (("missing", missing), ("repeated", twice), ("unknown", unknown * form.closed))
     told = [f"{what} column {', '.join(which)[:_HEADER_MAX]}" for what, which in wrong if which]
-    if missing and len(names) == 1:
+    if missing and len(names) == 1 and re.search(r"\W", names[0]):
         told.append(f"no comma, semicolon or tab in the header {names[0][:_CELL_MAX]!r}")
     if told:
         table.refuse([Fault(table.header_line, "", f"{'; '.join(told)}; {_has(form)}")])
