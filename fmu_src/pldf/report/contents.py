@@ -45,7 +45,8 @@ class DriverShown:
         recordings: complete, by phase, in order of the study.
         profile: base and the profile after each learned drive (the note of its iteration), as far
             as it was driven.
-        outcomes: what became of each intervention of ``explained``, a line each.
+        outcomes: what became of each intervention, a line each, by drive learned from; as far as
+            what the drives followed is what those before had taught.
         steps: one intervention explained; None if nothing was learned from ``explained``.
         explained: the first drive learned from.
         acting: the drives recorded in which the driver intervenes.
@@ -55,7 +56,7 @@ class DriverShown:
     participant: str
     recordings: Mapping[str, Recording]
     profile: StoredProfile
-    outcomes: tuple[str, ...]
+    outcomes: Mapping[str, tuple[str, ...]]
     steps: Steps | None
     explained: str
     acting: tuple[str, ...]
@@ -226,17 +227,40 @@ def _driver(
     for taught, seen in known.development().items():
         if seen in recordings and "profile_mps" in recordings[seen]:
             profile = profile.with_iteration(_followed(recordings[seen], profile, taught))
-    learned = learn_from(recordings[first], route, function=function)
+    outcomes = _outcomes(recordings, study, route, function)
     return DriverShown(
         participant=participant,
         recordings=recordings,
         profile=profile,
-        outcomes=tuple(lines_of(learned.function.outcomes())),
-        steps=explain_steps(learned),
+        outcomes=outcomes,
+        steps=explain_steps(learn_from(recordings[first], route, function=function)),
         explained=first,
         acting=tuple(p for names in study.compared().values() for p in names if p in recordings),
         not_known=tuple(p for p, recording in recordings.items() if "profile_mps" not in recording),
     )
+
+
+def _outcomes(
+    recordings: Mapping[str, Recording],
+    study: StudyFolder,
+    route: Route,
+    function: DrivingFunction,
+) -> dict[str, tuple[str, ...]]:
+    """Learn from one drive after the other; return what became of the interventions of each."""
+    told: dict[str, tuple[str, ...]] = {}
+    stored: StoredProfile | None = None
+    for phase in study.order():
+        if not phase.learn:
+            continue
+        if phase.name not in recordings:
+            break
+        learned = learn_from(recordings[phase.name], route, stored, function)
+        known = stored is None or "profile_mps" in recordings[phase.name]
+        if not known or any(note.severity == "warning" for note in learned.notes):
+            break
+        told[phase.name] = tuple(lines_of(learned.function.outcomes()))
+        stored = learned.profile
+    return told
 
 
 def _require_route(path: Path, recording: Recording, route: Route) -> None:
