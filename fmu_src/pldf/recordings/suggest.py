@@ -14,7 +14,7 @@ from ..toml_file import shown
 from .columns import RECORDING
 from .inputs import Input, open_input
 from .mapping import map_bytes, ready_maps
-from .reading import fits
+from .matching import fits
 from .units import header_of, unit_named, units_of
 
 # What a column may be called, without unit, capitals, blanks and signs; the first fits best.
