@@ -297,3 +297,28 @@ def test_part_of_the_road_is_a_note_of_a_drive_and_a_warning_of_a_study(
     _, report = found(study, "--route", road, capsys=capsys)
     assert report["counts"]["warning"] > 0
     assert all("covers 50 %" in w["text"] for w in report["findings"] if w["severity"] == "warning")
+
+
+def test_many_recordings_have_one_line_and_few_have_one_each(
+    tmp_path: Path, capsys: Capture
+) -> None:
+    study = laboratory(tmp_path / "study", ("P01", "P02", "P03"))
+    assert main(["check", str(study)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert "12 recordings: 99.9 s at 10 Hz, 0 drop-outs of 0 m in all" in lines
+    one = study / "recordings" / "P01_A1.csv"
+    assert main(["check", str(one)]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        f"{one}: 100 s at 10 Hz, 0 to 1998 m, 0 drop-outs",
+        "0 errors, 0 warnings, 0 notes in 1 file.",
+    ]
+
+
+def test_a_line_that_an_error_names_is_the_line_of_the_finding(
+    tmp_path: Path, capsys: Capture
+) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text('title = "t"\n[participants]\ncount = "many"\n', encoding="utf-8")
+    status, report = found(path, capsys=capsys)
+    (finding,) = report["findings"]
+    assert (status, finding["line"], finding["place"]) == (1, 3, "participants.count")

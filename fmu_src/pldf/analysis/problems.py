@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Final
@@ -12,6 +13,7 @@ from ..findings import Finding
 
 _TOLD_MAX: Final = 20
 _NAMED_MAX: Final = 12
+_AT: Final = re.compile(r"line (?P<line>\d+)(, (?P<place>[^:\n]+))?: ")
 
 
 class StudyError(ModelError):
@@ -36,6 +38,8 @@ def findings_of(error: ModelError, file: str) -> list[Finding]:
     if isinstance(error, TableError):
         return [Finding("error", file, one.line, one.place, one.text) for one in error.faults]
     text = str(error).removeprefix(file).lstrip(":, ")
+    if at := _AT.match(text):
+        return [Finding("error", file, int(at["line"]), at["place"] or "", text[at.end() :])]
     return [Finding("error", file, 0, "", text)]
 
 

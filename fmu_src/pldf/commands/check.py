@@ -37,6 +37,7 @@ EXAMPLE: Final = (
     "  pldf check simulator.csv --suggest-map > map.toml"
 )
 
+_LISTED_MAX: Final = 8  # recordings with a line each
 _STYLES: Final = {"error": "bold red", "warning": "yellow", "note": ""}
 
 
@@ -147,11 +148,26 @@ def _print(checks: Checks) -> None:
     else:
         for finding in findings:
             print(f"{finding.severity}: {finding}")
-    for file in checks.files:
-        if file.quality is not None:
-            print(f"{file.path}: {_about(file.quality)}")
+    for line in _qualities(checks.files):
+        print(line)
     told = [_count(len(checks.of(severity)), severity) for severity in SEVERITIES]
     print(f"{', '.join(told)} in {_count(len(checks.files), 'file')}.")
+
+
+def _qualities(files: Sequence[CheckedFile]) -> list[str]:
+    """Return a line per recording, of many one for all."""
+    recorded = [(file.path, file.quality) for file in files if file.quality is not None]
+    if len(recorded) <= _LISTED_MAX:
+        return [f"{path}: {_about(quality)}" for path, quality in recorded]
+    every = [quality for _, quality in recorded]
+    ranges = (
+        (f"{min(values):.3g}" + (f" to {max(values):.3g}" if max(values) > min(values) else ""))
+        for values in ([one.duration_s for one in every], [round(one.rate_hz, 3) for one in every])
+    )
+    duration, rate = ranges
+    holes = _count(sum(len(one.holes) for one in every), "drop-out")
+    lost = sum(one.lost_m for one in every)
+    return [f"{len(every)} recordings: {duration} s at {rate} Hz, {holes} of {lost:.0f} m in all"]
 
 
 def _count(number: int, what: str) -> str:
