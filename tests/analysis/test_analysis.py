@@ -372,4 +372,4 @@ def test_how_drives_and_exclusions_were_read_is_told(tmp_path: Path) -> None:
     )
     told = list(map(str, analyse(source).notes))
     assert any("the column 'Pedal_Rate' is read as pedal_rate" in note for note in told)
-    assert any("exclusions.csv, line 2: not UTF-8; read as Windows-1252" in note for note in told)
+    assert any("exclusions.csv, line 2: not UTF-8: read as Windows-1252" in note for note in told)
