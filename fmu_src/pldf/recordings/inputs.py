@@ -167,7 +167,10 @@ def _text_of(metadata: Mapping[bytes, bytes] | None, key: bytes) -> str:
     return (metadata or {}).get(key, b"").decode("utf-8", "replace")
 
 
-def _parquet_cells(column: Any) -> list[Cell]:
+def _parquet_cells(column: Any) -> Cells:
+    if column.null_count == 0 and str(column.type) in ("double", "float", "int64", "int32"):
+        values: FloatArray = column.to_numpy().astype(np.float64)
+        return values
     return ["" if cell is None else _cell(cell) for cell in column.to_pylist()]
 
 
