@@ -152,7 +152,7 @@ def test_what_is_no_such_file(
 
 @pytest.mark.parametrize("ending", [".parquet", ".mf4", ".npz"])
 def test_damage_is_told_or_does_no_harm(tmp_path: Path, ending: str) -> None:
-    """Never a traceback: each file with one run of bytes overwritten, at a hundred places."""
+    """Never a traceback: each file with one run of bytes overwritten, at forty places."""
     path, made = tmp_path / f"a{ending}", sample_recording()
     if ending == ".npz":
         texts = [MODE.items[int(code)] for code in made["mode"]]
@@ -160,7 +160,7 @@ def test_damage_is_told_or_does_no_harm(tmp_path: Path, ending: str) -> None:
     else:
         {".parquet": write_parquet, ".mf4": write_mdf4}[ending](path, made)
     whole, told = path.read_bytes(), 0
-    for seed in range(100):
+    for seed in range(40):
         random = np.random.default_rng(seed)
         at = int(random.integers(len(whole) - 8))
         path.write_bytes(whole[:at] + random.bytes(8) + whole[at + 8 :])
@@ -168,7 +168,7 @@ def test_damage_is_told_or_does_no_harm(tmp_path: Path, ending: str) -> None:
             read_recording(path)
         except ModelError:
             told += 1
-    assert told > 5
+    assert told > 2
 
 
 def test_an_array_without_names_is_refused(tmp_path: Path) -> None:

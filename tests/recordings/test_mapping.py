@@ -469,6 +469,9 @@ def test_the_map_of_a_study_is_kept_and_another_one_is_not_overwritten(
         text = as_laboratory(sample_recording(0.1 * number))
         (study / "recordings" / f"{person}_{phase}.csv").write_text(text)
     first = ["analyse", str(study), "--map", str(mapping)]
+    mapping.write_text(LABORATORY_MAP.replace("v [km/h]", "speed"))
+    assert cli.main(first) == 1 and not (study / "map.toml").exists()  # it fits no recording
+    mapping.write_text(LABORATORY_MAP)
     assert cli.main(first) == 0
     assert (study / "map.toml").read_text() == LABORATORY_MAP
     assert "is kept as" in capsys.readouterr().out

@@ -81,7 +81,6 @@ def run(options: argparse.Namespace) -> None:
     study = StudyFolder(
         options.folder, route, frozenset(options.without), chosen_map(options), options.profiles
     )
-    remember_map(options, options.folder)
     with progress_bar("read", 1.0, "recordings") as bar:  # analyse tells how many there are
         task = bar.task_ids[0]
         analysis, checks = analysed(
@@ -89,6 +88,7 @@ def run(options: argparse.Namespace) -> None:
         )
     answers = analysis.questionnaire.notes if analysis.questionnaire else ()
     tell(n for n in analysis.notes if n.severity == "warning" or n not in answers)
+    remember_map(options, options.folder)  # one that could not be used is not worth keeping
     written = write_tables(analysis, options.out or options.folder / "analysis")
     console = Console()
     console.print(_means(analysis))
