@@ -149,7 +149,8 @@ def _read_script(path: Path) -> Answer:
     events = read_script(path)
     names = ("at", "unit", "control", "value", "duration_s")
     values: Values = {name: [float(getattr(e, name)) for e in events] for name in names}
-    return Answer(values | {"control": [code - 1.0 for code in values["control"]]})
+    codes = [code - 1.0 for code in values["control"]]
+    return Answer(values | {"control": codes}, notes(events))
 
 
 def _judge_script(columns: Values) -> Values:

@@ -36,7 +36,8 @@ def _participants_sheet(chance: random.Random) -> Sheet:
 
 
 def _read_participants(path: Path) -> Answer:
-    people = read_participants(path)
+    told: list[Finding] = []
+    people = read_participants(path, told)
     values: Values = {
         "participant": [p.id for p in people],
         "seed": [float(p.seed) for p in people],
@@ -45,7 +46,7 @@ def _read_participants(path: Path) -> Answer:
         field = name.replace(".", "_")
         if all(field in person.values for person in people):
             values[name] = [float(person.values[field]) for person in people]
-    return Answer(values)
+    return Answer(values, " ".join(map(str, told)))
 
 
 def _judge_participants(columns: Values) -> Values:

@@ -123,6 +123,7 @@ def test_numbers_for_words_and_words_in_other_capitals() -> None:
     table = parse("who,x_m,count,on,mode,maybe\n" + rows)
     assert table.numbers["mode"].tolist() == [1.0, 0.0, 1.0, 0.0]
     assert table.numbers["on"].tolist() == [1.0, 0.0, 1.0, 0.0]
+    assert "on: true is read as 1" in told(table)
     assert "mode: numbers for words: 1.0 is ON, 0 is OFF" in told(table)
     assert "mode: read without regard to capitals: on, Off" in told(table)
     for strange in ("2", "1.5", "-1", "nan"):

@@ -142,6 +142,8 @@ def _numbers(column: Column, cells: Sequence[str], told: list[str]) -> FloatArra
     if column.kind == "flag":
         for row in np.flatnonzero(np.isnan(numbers)).tolist():
             numbers[row] = _FLAGS.get(cells[row].strip().lower(), nan)
+            if np.isfinite(numbers[row]) and not told:
+                told.append(f"{cells[row].strip()} is read as {numbers[row]:g}")
     return numbers
 
 
