@@ -205,6 +205,19 @@ def test_an_intervention_where_nothing_is_eligible_says_so() -> None:
     assert list(outcomes(made)) == [OUTCOME_NOT_ELIGIBLE]
 
 
+def test_a_press_whose_only_metre_the_next_one_takes_did_not_move() -> None:
+    made = function(road(2000.0), learning_stretch_factor=0.0, learning_pedal_gap_s=0.0)
+    s_m = np.concatenate(
+        (np.arange(0.0, 500.0, 0.5), [500.0, 500.0], np.arange(500.5, 2000.0, 0.5))
+    )
+    mode = np.full(len(s_m), float(ACTIVE))
+    mode[999] = GAS_OVERRIDE  # from 499.5 to 500 m
+    mode[1001:1100] = GAS_OVERRIDE  # from 500 m on
+    play(made, s_m, 29.0, time_s=np.arange(len(s_m)) / 58.0, mode=mode)
+    made.learn()
+    assert list(outcomes(made)) == [OUTCOME_NOT_MOVED, OUTCOME_LEARNED]
+
+
 def test_a_press_in_a_standing_car_teaches_nothing_and_says_so() -> None:
     made = function(road(2000.0))
     s_m = np.concatenate((np.arange(0.0, 500.25, 0.5), np.full(20, 500.2), [501.0, 502.0]))

@@ -41,6 +41,9 @@ def _insert_piece(st: PldfState, trace: TraceArrays, work: Work, k: int, alpha: 
     slowest = trace.speed_mps[last]
     if first < start:
         first += 1
+    # Not eligible, unless it is where it may be learned; then a run with a node of it decides. A
+    # node that the next piece takes as well belongs to that one.
+    outcome = OUTCOME_NOT_MOVED if first > last else OUTCOME_NOT_ELIGIBLE
     for i in range(first, last + 1):
         # Behind the last node recorded there is no speed to read, though the drive went on a bit.
         d = min(source_position(float(i), d_n, alpha), float(end))
@@ -50,12 +53,10 @@ def _insert_piece(st: PldfState, trace: TraceArrays, work: Work, k: int, alpha: 
             work.b[i] = NOT_LEARNED
         elif work.b[i] != NOT_LEARNED:
             work.b[i] = k + 1.0
-    if first > last:
-        return OUTCOME_NOT_MOVED
+            outcome = OUTCOME_NOT_MOVED
     if hole:
         return OUTCOME_HOLE
-    # Not eligible, unless a run with a node of it is learned.
-    return OUTCOME_STOP if slowest < st.learning_speed_min_mps else OUTCOME_NOT_ELIGIBLE
+    return OUTCOME_STOP if slowest < st.learning_speed_min_mps else outcome
 
 
 def _largest_gap(trace: TraceArrays, first: int, last: int) -> float:
