@@ -88,7 +88,8 @@ def verdict(kind: Kind, path: Path, encoding: str, mark: bytes) -> tuple[Word, s
     """Return right, told, refused or violation, and what speaks for it."""
     meant, why = None, "encoding"
     try:
-        data = path.read_bytes().removeprefix(mark)
+        data = path.read_bytes()
+        data = b"" if mark.startswith(data) else data.removeprefix(mark)
         # Whatever stands before a road's XML is passed over.
         text = data[max(data.find(b"<OpenDRIVE"), 0) :].decode(encoding)
         if "\0" in text or "\ufffd" in text:

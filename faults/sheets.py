@@ -111,6 +111,7 @@ def understood(data: bytes, dress: Dress) -> tuple[list[str], list[list[str]]]:
     if not records:
         raise Unclear("empty")
     header, *rows = ([_bare(cell) for cell in row] for row in records)
+    rows = [row if any(row[len(header) :]) else row[: len(header)] for row in rows]
     if any(len(row) != len(header) for row in rows):
         raise Unclear("ragged")
     return header, rows

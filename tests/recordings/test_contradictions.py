@@ -401,3 +401,29 @@ def test_a_recording_made_in_python_may_lack_what_no_file_does() -> None:
     del columns["mode"]
     assert found(columns)[0].text == "missing column mode"
     assert found({name: values[:1] for name, values in driven().items()})[0].text == "1 samples"
+
+
+def late(name: str, rows: int) -> Change:
+    return with_column(name, lambda c: np.concatenate((np.full(rows, c[name][0]), c[name][:-rows])))
+
+
+def test_a_speed_that_is_late_for_the_position_is_told() -> None:
+    finding = only(
+        with_column("speed_mps", lambda c: c["speed_mps"] + 3.0 * (c["time_s"] < 9))(driven())
+    )
+    assert finding.place == "speed_mps, s_m"
+    assert "for 7.1 s, first at 0.0 s (1 m), they differ by up to 10.8 km/h" in finding.text
+
+
+def test_an_offset_that_changes_without_the_set_speed_is_told() -> None:
+    columns = late("set_speed_offset_mps", 100)(driven())
+    finding = only({n: v for n, v in columns.items() if n != "limit_mps"}, with_road=False)
+    assert finding.place == "set_speed_mps, set_speed_offset_mps"
+    assert "2 of 2 changes of the offset are none of the set speed" in finding.text
+    assert "the first by +10.0 km/h at 85.1 s" in finding.text
+
+
+def test_a_drive_without_leave_to_learn_is_told() -> None:
+    columns = driven()
+    finding = only({**columns, "eligible": np.zeros(len(columns["time_s"]))})
+    assert finding.text == "0 in every row: learning was allowed nowhere"

@@ -16,6 +16,7 @@ def sample_recording(shift: float = 0.0) -> Recording:
     brake[500:550] = 0.4
     gas = np.where(mode == 3.0, 0.5, 0.0)
     limit = np.full(len(time), 25.0)
+    offset = np.where(time >= 60.0, 2.0, 0.0)
     columns = {
         "time_s": time,
         "s_m": 20.0 * time,
@@ -24,8 +25,8 @@ def sample_recording(shift: float = 0.0) -> Recording:
         "mode": mode,
         "gas_pedal": gas,
         "brake_pedal": brake,
-        "set_speed_mps": limit,
-        "set_speed_offset_mps": np.where(time >= 60.0, 2.0, 0.0),
+        "set_speed_mps": limit + offset,
+        "set_speed_offset_mps": offset,
         "profile_mps": np.full(len(time), 22.0 + shift),
         "base_mps": np.full(len(time), 22.0),
         "limit_mps": limit,

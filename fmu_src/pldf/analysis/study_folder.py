@@ -180,8 +180,7 @@ class StudyFolder:
         if self.route is None:
             return recording
         participant, phase = next(drive for drive, one in self.listed[0].items() if one == path)
-        function = DrivingFunction()
-        function.prepare(self.route)
+        function = self._function
         if phase[0] == "A" or all(name in recording for name in _LEARNED):
             return completed(recording, function, str(path))
         try:
@@ -192,6 +191,7 @@ class StudyFolder:
             stored = None  # a profile less in a figure
         if stored is None:
             return completed(recording, function, str(path), profile_known=False)
+        function = self._follower
         function.follow(stored)
         whole = completed(recording, function, str(path))
         text = f"followed iteration {len(stored.iterations)} of its learned profile"
@@ -200,6 +200,22 @@ class StudyFolder:
     def _followed(self, participant: str, phase: str) -> StoredProfile | None:
         """Return the profile as it was before a drive of B; None if there are no profiles."""
         return self._profiles.followed(participant, phase) if self._profiles else None
+
+    @cached_property
+    def _function(self) -> DrivingFunction:
+        """The function on the route, with the base profile."""
+        function = DrivingFunction()
+        assert self.route is not None
+        function.prepare(self.route)
+        return function
+
+    @cached_property
+    def _follower(self) -> DrivingFunction:
+        """The same, for profiles that were learned."""
+        function = DrivingFunction()
+        assert self.route is not None
+        function.prepare(self.route)
+        return function
 
     @cached_property
     def _profiles(self) -> Profiles | None:

@@ -17,7 +17,7 @@ from ..errors import ModelError
 from ..findings import Finding, Severity
 from ..kernel.arrays import RouteArrays
 from ..kernel.codes import ACTIVE, GAS_OVERRIDE, MODE
-from . import against_road, frozen, unit_doubts
+from . import against_road, apart, frozen, set_speeds, unit_doubts
 from .columns import RECORDING
 from .interventions import PRESSED
 from .quality import HOLE_S, Hole, holes
@@ -53,9 +53,19 @@ def contradictions(
         found += against_road.against_road(recording, file, route, scales_fit)
     if scales_fit:
         found += frozen.frozen(recording, file)
+        if not (_about("speed_mps", found) or _about("s_m", found)):
+            found += apart.apart(recording, file)
         found += [*_standing(recording, file), *_holes(recording, file)]
-    found += [*_never_active(recording, file), *_pedals(recording, file)]
+    found += [*_never_active(recording, file), *_never_eligible(recording, file)]
+    found += _pedals(recording, file)
+    if not _about("set_speed_mps", found):
+        found += set_speeds.set_speeds(recording, file)
     return sorted(found, key=lambda finding: finding.severity != "error")
+
+
+def _about(column: str, found: list[Finding]) -> bool:
+    """Tell whether a column is doubted already: what follows from that needs no finding."""
+    return any(column in finding.place.split(", ") for finding in found)
 
 
 def require_sound(
@@ -160,6 +170,14 @@ def _never_active(recording: Recording, file: str) -> Iterator[Finding]:
         "check which words or numbers of the logger mean ACTIVE ([mode] in a mapping file), or "
         "leave the recording out",
     )  # fmt: skip
+
+
+def _never_eligible(recording: Recording, file: str) -> Iterator[Finding]:
+    if "eligible" in recording and not np.any(recording["eligible"]):
+        yield Finding(
+            "warning", file, 0, "eligible", "0 in every row: learning was allowed nowhere",
+            "nothing is learned", "leave the column out if learning was allowed everywhere",
+        )  # fmt: skip
 
 
 def _pedals(recording: Recording, file: str) -> Iterator[Finding]:

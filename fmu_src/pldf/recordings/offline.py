@@ -89,9 +89,10 @@ def learn_from(
     samples = Samples(*(view(np.ascontiguousarray(columns[name])) for name in Samples._fields))
     replay(function.record, function.route, function.trace, samples)
     if function.record.nodes < 2:
+        where = f"{file}: " if file else ""
         raise ModelError(
-            f"the recording (s_m {columns['s_m'].min():g} to {columns['s_m'].max():g}) does not "
-            f"advance on {route.name} (0 to {route.length_m:g} m)"
+            f"{where}the recording (s_m {columns['s_m'].min():g} to {columns['s_m'].max():g}) does "
+            f"not advance on {route.name} (0 to {route.length_m:g} m)"
         )
     iteration = function.learn("learn")
     notes = (*whole.notes, *_contradicted(recording, function, file, named))
