@@ -17,9 +17,10 @@ from ..analysis.checks import Checks, analysed
 from ..analysis.published import DRIVERS, TESTS, published_means
 from ..analysis.questionnaires import SCALES, Questionnaire
 from ..analysis.study_folder import StudyFolder
-from .shared.mapping import add_map, chosen_map, remember_map, tell
+from .shared.mapping import add_map, chosen_map, remember_map
 from .shared.progress import progress_bar
 from .shared.road import add_road, chosen_road
+from .shared.telling import tell
 
 EXAMPLE: Final = (
     "pldf analyse out --report report.html\n"

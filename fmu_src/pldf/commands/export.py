@@ -8,7 +8,8 @@ from typing import Final
 
 from ..recordings.exports import write_mdf4, write_parquet
 from ..recordings.recording import read_recording
-from .shared.mapping import add_map, chosen_map, tell
+from .shared.mapping import add_map, chosen_map
+from .shared.telling import tell
 
 EXAMPLE: Final = "pldf export out/recordings/P001_B1.csv --parquet b1.parquet --mdf4 b1.mf4"
 

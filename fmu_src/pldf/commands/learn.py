@@ -21,9 +21,10 @@ from ..recordings.contradictions import require_sound
 from ..recordings.offline import Learned, explain, learn_from
 from ..recordings.recording import read_recording
 from ..roads import route_arrays
-from .shared.mapping import add_map, chosen_map, tell
+from .shared.mapping import add_map, chosen_map
 from .shared.road import add_road, required_road
 from .shared.settings import add_settings, apply_settings
+from .shared.telling import tell
 
 EXAMPLE: Final = (
     "pldf learn --route study --recording out/recordings/P001_A2.csv --out a2.pldf\n"

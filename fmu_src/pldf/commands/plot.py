@@ -15,8 +15,9 @@ from ..recordings.derived import completed
 from ..recordings.interventions import rates_of
 from ..recordings.recording import Recording, read_recording
 from ..roads import Road, open_route
-from .shared.mapping import add_map, chosen_map, tell
+from .shared.mapping import add_map, chosen_map
 from .shared.road import add_road, chosen_road
+from .shared.telling import tell
 
 EXAMPLE: Final = (
     "pldf plot out/recordings/P001_B1.csv --out b1.png\n"

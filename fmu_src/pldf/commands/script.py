@@ -18,7 +18,7 @@ from vehicle_models.driver_script import (
 from vehicle_models.script_kernel import AT_POSITION, BRAKE, GAS, RESUME
 
 from ..cosim.prepared import SUFFIX, write_prepared_script
-from .shared.mapping import tell
+from .shared.telling import tell
 
 EXAMPLE: Final = "pldf script my_drive.csv --export my_drive.prepared"
 

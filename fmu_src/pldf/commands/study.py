@@ -24,10 +24,10 @@ from .shared.coupling import (
     chosen_fmus,
     print_warnings,
 )
-from .shared.mapping import tell
 from .shared.progress import progress_bar
 from .shared.road import default_limit_mps
 from .shared.settings import split_settings
+from .shared.telling import tell
 
 EXAMPLE: Final = (
     "pldf study\n"

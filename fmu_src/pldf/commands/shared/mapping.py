@@ -1,15 +1,13 @@
-"""How a mapping file is named and remembered, and how it is told what was read by it."""
+"""How a mapping file is named and remembered."""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterable
 from pathlib import Path
 
 from ...errors import ModelError
 from ...files.disk import reason, replace_file
-from ...findings import Finding
 from ...recordings.mapping import MAP_FILE, RecordingMap, map_bytes, read_map, ready_maps
 
 
@@ -48,9 +46,3 @@ def remember_map(options: argparse.Namespace, folder: Path) -> None:
             print(f"pldf: {kept} is another map and is left as it is; {text}", file=sys.stderr)
     except OSError as error:
         raise ModelError(f"{kept}: cannot be written ({reason(error)})") from error
-
-
-def tell(findings: Iterable[Finding]) -> None:
-    """Say on stderr how files were read and what was repaired."""
-    for finding in findings:
-        print(f"{finding.severity}: {finding}", file=sys.stderr)

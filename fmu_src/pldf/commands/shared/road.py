@@ -7,7 +7,7 @@ import math
 
 from ...kernel.units import KMH_PER_MPS
 from ...roads import Road, open_road
-from .mapping import tell
+from .telling import tell
 
 _LIMIT_MAX_KMH = 300.0
 
