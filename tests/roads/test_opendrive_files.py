@@ -143,9 +143,8 @@ PLACE = '<?xml version="1.0" encoding="{0}"?>\n<OpenDRIVE><header name="{1}"/>{2
     ("declared", "written", "name"),
     [
         ("GB2312", "gb2312", "测试路"),
-        ("gb2312", "gbk", "朱镕基路"),  # a letter that GB 2312 lacks and GBK has
         ("GBK", "gbk", "朱镕基路"),
-        ("Shift_JIS", "cp932", "髙橋通り"),  # the same with Shift JIS
+        ("Shift_JIS", "cp932", "田中通り"),
         ("EUC-JP", "euc_jp", "道路"),
         ("windows-1252", "cp1252", "Straße"),
         ("UTF-16", "utf-16", "Straße"),
@@ -174,6 +173,20 @@ def test_a_declaration_that_is_not_true_is_told(
     (note,) = route.notes
     assert route.name == "Straße"
     assert str(note).endswith(f"line 1: declares {declared} and is in UTF-8, as which it was read")
+
+
+@pytest.mark.parametrize(
+    ("declared", "written", "name", "larger"),
+    [("gb2312", "gbk", "朱镕基路", "GB18030"), ("Shift_JIS", "cp932", "髙橋通り", "CP932")],
+)
+def test_letters_beyond_the_declared_set_are_read_and_told(
+    tmp_path: Path, declared: str, written: str, name: str, larger: str
+) -> None:
+    path = tmp_path / "town.xodr"
+    path.write_bytes(PLACE.format(declared, name, straight("1")).encode(written))
+    route = read_route(path)
+    assert route.name == name
+    assert f"has letters that only {larger} has" in str(route.notes[0])
 
 
 @pytest.mark.parametrize(

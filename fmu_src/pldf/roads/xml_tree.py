@@ -126,9 +126,9 @@ def _text(data: bytes, root: str, path: Path, notes: list[Finding]) -> tuple[str
             told = f"declares {named} and is in UTF-8, as which it was read"
             notes.append(Finding("note", str(path), skipped + 1, "", told))
         else:
-            encoding = _LARGER.get(named.lower(), named)
+            encoding = named
     try:
-        text = data.decode(encoding)
+        text = _decoded(data, encoding, path, skipped + 1, notes)
     except LookupError:
         told = f"unknown encoding {encoding!r}; save the file as UTF-8, and declare that"
         raise ModelError(f"{path}, line {skipped + 1}: {told}") from None
@@ -139,6 +139,22 @@ def _text(data: bytes, root: str, path: Path, notes: list[Finding]) -> tuple[str
         raise ModelError(f"{path}, line {line}: {told}") from None
     start = _start(text, "<?xml ", f"<{root}")
     return text[start:], skipped + text.count("\n", 0, start)
+
+
+def _decoded(data: bytes, encoding: str, path: Path, line: int, notes: list[Finding]) -> str:
+    """Return the text; in the larger set of letters if it has some that the declared one lacks."""
+    larger = _LARGER.get(encoding.lower())
+    try:
+        return data.decode(encoding)
+    except UnicodeDecodeError:
+        if not larger:
+            raise
+    text = data.decode(larger)
+    told = (
+        f"declares {encoding} and has letters that only {larger.upper()} has, as which it was read"
+    )
+    notes.append(Finding("note", str(path), line, "", told))
+    return text
 
 
 def _start(data: AnyStr, declaration: AnyStr, root: AnyStr) -> int:
