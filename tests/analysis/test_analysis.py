@@ -373,3 +373,10 @@ def test_how_drives_and_exclusions_were_read_is_told(tmp_path: Path) -> None:
     told = list(map(str, analyse(source).notes))
     assert any("the column 'Pedal_Rate' is read as pedal_rate" in note for note in told)
     assert any("exclusions.csv, line 2: not UTF-8: read as Windows-1252" in note for note in told)
+
+
+@pytest.mark.parametrize("text", ["drives = 5", '[drives]\nphases = ["A1", "X"]', "road = 5"])
+def test_a_study_file_that_is_none_is_refused(tmp_path: Path, text: str) -> None:
+    source = study(tmp_path)
+    (tmp_path / "study.toml").write_text(text)
+    assert "study.toml, line" in refusal(source)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -21,6 +20,8 @@ from ..recordings.recording import Recording, read_recording
 from ..roads import Route
 from ..study.drive_row import PHASE
 from ..study.phases import PHASES, Phase
+from ..study.study_tables import StudyTables
+from ..toml_file import TomlFile
 from .exclusions import EXCLUSIONS, Exclusions, read_exclusions
 from .followed import Profiles
 from .names import Names
@@ -79,10 +80,11 @@ class StudyFolder:
     def study_file(self) -> Mapping[str, Any]:
         """The study file that a simulation left in the folder; empty for real participants."""
         path = self.folder / "study.toml"
-        try:
-            return tomllib.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-        except (OSError, ValueError) as error:
-            raise ModelError(f"{path}: {error}") from error
+        if not path.exists():
+            return {}
+        file = TomlFile(path)
+        file.read(StudyTables)  # refuses what no study has
+        return file.table
 
     def order(self) -> list[Phase]:
         """Return the drives in the order of the study; repeated phases are numbered anew."""
