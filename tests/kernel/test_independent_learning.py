@@ -70,10 +70,11 @@ def learned(pieces: Pieces, drive: Driven, profile: Array, curvature: Array) -> 
         inside = (s >= first) & (s <= d_n)
         d = (s[inside] + alpha * d_n) / (1.0 + alpha)  # where it was recorded
         lift = np.interp(first, s, v) - np.interp(d_0, s, v)
-        prepro[inside] = np.interp(d, s, v) + (d_n - d) / (d_n - d_0) * lift  # eq. (2)
+        joined = np.interp(d, s, v) + (d_n - d) / (d_n - d_0) * lift  # eq. (2)
+        prepro[inside] = np.maximum(joined, 10.0 * KMH)
         lost = gap[int(first) : int(d_n) + 1].any() or ~eligible[d.astype(int)]
         owner[inside] = np.where(lost | (owner[inside] == LOST), LOST, k + 1)
-        if min(prepro[inside].min(), v[int(first) : int(d_n) + 1].min()) < 10.0 * KMH:
+        if v[int(first) : int(d_n) + 1].min() < 10.0 * KMH:
             stopped.add(k + 1)
     wish = (owner > 0) | ((owner == OUTSIDE) & (np.abs(prepro - profile) > 1.0 * KMH))
     result = profile.copy()

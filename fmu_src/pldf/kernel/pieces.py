@@ -47,8 +47,9 @@ def _insert_piece(st: PldfState, trace: TraceArrays, work: Work, k: int, alpha: 
     for i in range(first, last + 1):
         # Behind the last node recorded there is no speed to read, though the drive went on a bit.
         d = min(source_position(float(i), d_n, alpha), float(end))
-        work.a[i] = _stretched_speed(trace, start, k, d)
-        slowest = min(slowest, work.a[i], trace.speed_mps[i])
+        # Slower than the slowest wish that is learned no piece becomes by being lifted (decision).
+        work.a[i] = max(_stretched_speed(trace, start, k, d), st.learning_speed_min_mps)
+        slowest = min(slowest, trace.speed_mps[i])
         if hole or trace.eligible[cell_at(len(work.a), d)] <= 0.0:
             work.b[i] = NOT_LEARNED
         elif work.b[i] != NOT_LEARNED:
