@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -28,6 +27,7 @@ from ..recordings.steps import Steps, explain_steps
 from ..roads import Route, fingerprint, open_route, route_arrays
 from ..route_facts import RouteFacts, route_facts
 from ..study.participants_file import PARTICIPANTS
+from .own_versions import read_parameters, read_text
 
 STUDY: Final = "study.toml"
 VERSIONS: Final = "versions.json"
@@ -114,11 +114,9 @@ def collect(
     """
     folder = study.folder
     texts = {
-        name: (folder / name).read_text(encoding="utf-8")
-        for name in (STUDY, VERSIONS)
-        if (folder / name).exists()
+        name: read_text(folder / name) for name in (STUDY, VERSIONS) if (folder / name).exists()
     }
-    parameters = json.loads(texts.get(VERSIONS, "{}")).get("parameters", {})
+    parameters = read_parameters(folder / VERSIONS, texts.get(VERSIONS, "{}"))
     route = study.route or _route_of(study)
     function = _function(parameters.get("pldf", {}))
     shown = _choose(analysis, study, driver)
@@ -160,7 +158,8 @@ def _function(values: Mapping[str, float]) -> DrivingFunction:
     function = DrivingFunction()
     for signal in signals_of(function.record):
         if signal.causality == "parameter" and signal.name in values:
-            setattr(function.record, signal.field, values[signal.name])
+            value = values[signal.name]
+            setattr(function.record, signal.field, value if signal.kind == "Real" else int(value))
     return function
 
 

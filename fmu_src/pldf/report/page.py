@@ -260,9 +260,16 @@ def _parameter_tables(contents: Contents) -> Iterator[ParameterTable]:
 
 def _table_of(part: str, record: type[Any], values: Mapping[str, float]) -> ParameterTable:
     rows = [
-        (signal, (f"{values.get(signal.name, signal.start):.6g}",))
+        (signal, (_written(signal, values),))
         for signal in signals_of(record)
         if signal.causality == "parameter"
     ]
     defaults = "" if values else " (defaults, for the figures)"
     return ParameterTable(f"Parameters of the {_PARTS[part]}{defaults}", (), rows)
+
+
+def _written(signal: Signal, values: Mapping[str, float]) -> str:
+    """Return the value that the run had; a release that knew the parameter not yet wrote none."""
+    if signal.name in values or not values:
+        return f"{values.get(signal.name, signal.start):.6g}"
+    return f"not known to the run ({signal.start:.6g} here)"
