@@ -21,8 +21,9 @@ import numpy as np
 from pldf import cli
 from pldf.profiles.store import read_profile
 
+from .byte_changes import DAMAGES
 from .experiment import Counts, Experiment, Progress
-from .sheet_changes import CONTENTS, DAMAGES, DRESSES
+from .sheet_changes import CONTENTS, DRESSES
 from .spoilt_drives import ROAD, SPOILS, Array, Drive, sheet_of, sound_drive
 from .verdicts import Verdict, Word, counted
 

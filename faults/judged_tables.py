@@ -17,9 +17,10 @@ from typing import Any, Final
 from pldf.errors import ModelError
 
 from . import judged_kinds, judged_people
+from .byte_changes import DAMAGES
 from .experiment import Counts, Experiment, Progress
 from .judged_kinds import Kind, Values
-from .sheet_changes import CONTENTS, DAMAGES, DRESSES, PLAIN
+from .sheet_changes import CONTENTS, DRESSES, PLAIN
 from .sheets import Dress, Unclear, column, number, understood
 from .verdicts import Verdict, Word, counted, refusal, same
 

@@ -12,9 +12,9 @@ from typing import Final
 
 from pldf.errors import ModelError
 
+from .byte_changes import DAMAGES
 from .experiment import Counts, Experiment, Progress
 from .judged_text_kinds import KINDS, Kind
-from .sheet_changes import DAMAGES
 from .sheets import NUMBER, Unclear
 from .verdicts import Verdict, Word, counted, refusal, same
 

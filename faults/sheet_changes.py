@@ -12,8 +12,6 @@ from .sheets import NUMBER, Sheet
 
 # Changes a sheet.
 Change = Callable[[Sheet, random.Random], None]
-# Changes a written file.
-Damage = Callable[[bytes, random.Random], bytes]
 
 
 def _dressed(**marks: object) -> Change:
@@ -271,35 +269,3 @@ PLAIN: Final = frozenset(
      "blank_lines", "comments", "padding", "floats", "floats_column", "moved_column",
      "more_columns")
 )  # fmt: skip
-
-
-def _cut(data: bytes, chance: random.Random) -> bytes:
-    return data[: chance.randrange(len(data))]
-
-
-def _nul(data: bytes, chance: random.Random) -> bytes:
-    at = chance.randrange(len(data))
-    return data[:at] + b"\0" * chance.choice((1, 4, 512)) + data[at + chance.choice((0, 1)) :]
-
-
-def _bit(data: bytes, chance: random.Random) -> bytes:
-    at = chance.randrange(len(data))
-    return data[:at] + bytes((data[at] ^ 1 << chance.randrange(8),)) + data[at + 1 :]
-
-
-def _byte(data: bytes, chance: random.Random) -> bytes:
-    at = chance.randrange(len(data))
-    return data[:at] + bytes((chance.randrange(256),)) + data[at + 1 :]
-
-
-def _twice(data: bytes, chance: random.Random) -> bytes:
-    return data + data
-
-
-DAMAGES: Final[dict[str, Damage]] = {
-    "cut": _cut,
-    "nul": _nul,
-    "bit": _bit,
-    "byte": _byte,
-    "file_twice": _twice,
-}
