@@ -251,13 +251,18 @@ def test_what_an_fmu_refuses_is_told_once_and_leaves_no_harm(
     assert driven(fmus, PHASES["A3"], setting(), 200.0).arrived
 
 
-def test_warnings_of_the_fmus_are_kept(
+def test_what_the_fmus_say_is_kept(
     fmus: dict[str, Fmu], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("PLDF_PROFILE_STORE", raising=False)
     result = driven(fmus, PHASES["A2"], setting(), 300.0)
-    assert [message.level for message in result.messages] == ["warning"]
-    assert "no profile store" in result.messages[0].text
+    warning, *outcomes = result.messages
+    assert warning.level == "warning"
+    assert "no profile store" in warning.text
+    # What the drive taught is said, too, though there is no store to keep it.
+    assert outcomes
+    assert {message.level for message in outcomes} == {"info"}
+    assert all(m.text.startswith(("pedal intervention", "set speed")) for m in outcomes)
     assert capsys.readouterr().err == ""
 
 
