@@ -14,15 +14,13 @@ from math import nan
 from pathlib import Path
 from typing import Any, Final
 
-from pldf.errors import ModelError
-
 from . import judged_kinds, judged_people
 from .byte_changes import DAMAGES
 from .experiment import Counts, Experiment, Progress
-from .judged_kinds import Kind, Values
+from .judged_kinds import Answer, Kind, Values
 from .sheet_changes import CONTENTS, DRESSES, PLAIN
 from .sheets import Dress, Unclear, column, number, understood
-from .verdicts import Verdict, Word, counted, refusal, same
+from .verdicts import Verdict, Word, asked, counted, same
 
 KINDS: Final = (*judged_kinds.KINDS, *judged_people.KINDS)
 # A note that the letters may be others than were meant.
@@ -108,12 +106,9 @@ def verdict(kind: Kind, path: Path, dress: Dress) -> tuple[Word, str]:
         why = ""
     except Unclear as unclear:
         meant, why = None, str(unclear)
-    try:
-        answer = kind.read(path)
-    except ModelError as error:
-        return refusal(path.name, error)
-    except Exception as error:
-        return "violation", f"{type(error).__name__}: {error}"
+    answer = asked(kind.read, path)
+    if not isinstance(answer, Answer):
+        return answer
     if meant is None:
         told: Word = "told" if answer.told else "violation"
         return told, answer.told or f"taken without a word, though unclear: {why}"

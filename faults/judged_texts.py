@@ -10,13 +10,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
-from pldf.errors import ModelError
-
 from .byte_changes import DAMAGES
 from .experiment import Counts, Experiment, Progress
+from .judged_kinds import Answer
 from .judged_text_kinds import KINDS, Kind
 from .sheets import NUMBER, Unclear
-from .verdicts import Verdict, Word, counted, refusal, same
+from .verdicts import Verdict, Word, asked, counted, same
 
 _NUMBER: Final = re.compile(rf"(?<![\w.]){NUMBER.pattern}(?![\w.])", re.ASCII)
 _ENCODINGS: Final = {
@@ -100,12 +99,9 @@ def verdict(kind: Kind, path: Path, encoding: str, mark: bytes) -> tuple[Word, s
         meant = kind.judge(text.replace("\r\n", "\n").replace("\r", "\n"))
     except (UnicodeError, Unclear) as unclear:
         why = str(unclear)
-    try:
-        answer = kind.read(path)
-    except ModelError as error:
-        return refusal(path.name, error)
-    except Exception as error:
-        return "violation", f"{type(error).__name__}: {error}"
+    answer = asked(kind.read, path)
+    if not isinstance(answer, Answer):
+        return answer
     if answer.told:
         return "told", answer.told
     if meant is None:

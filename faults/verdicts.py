@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from math import isnan
+from pathlib import Path
 from typing import Any, Literal, NamedTuple, Protocol, TypeVar
+
+from pldf.errors import ModelError
 
 from .experiment import Counts, Progress
 
@@ -29,6 +32,7 @@ class Kind(Protocol):
 
 
 KindT = TypeVar("KindT", bound=Kind)
+AnswerT = TypeVar("AnswerT")
 # Spoils so many of a kind with this seed.
 Trials = Callable[[KindT, int, int], Iterable[Verdict]]
 
@@ -49,9 +53,14 @@ def counted(
     return dict(found)
 
 
-def refusal(name: str, error: Exception) -> tuple[Word, str]:
-    """Return the verdict on a ModelError: it has to name the file."""
-    return ("refused" if name in str(error) else "violation"), str(error)
+def asked(read: Callable[[Path], AnswerT], path: Path) -> AnswerT | tuple[Word, str]:
+    """Return what a reader answers to the file ``path``; if it raises, the verdict on that."""
+    try:
+        return read(path)
+    except ModelError as error:  # a refusal has to name the file
+        return ("refused" if path.name in str(error) else "violation"), str(error)
+    except Exception as error:
+        return "violation", f"{type(error).__name__}: {error}"
 
 
 def same(got: Any, meant: Any) -> bool:

@@ -67,11 +67,12 @@ def learn(
     from .function import DrivingFunction
     from .recordings.contradictions import require_sound
     from .recordings.offline import learn_from
+    from .roads import route_arrays
 
     function = DrivingFunction()
     set_parameters(function.record, parameters or {})
-    function.prepare(route)  # refuses parameters out of their range
-    for finding in require_sound(recording, "recording", function.route):
+    function.check_parameters()  # before the recording is held against anything
+    for finding in require_sound(recording, "recording", route_arrays(route)):
         if finding.severity == "warning":
             warnings.warn(str(finding), stacklevel=2)
     return learn_from(recording, route, profile, function)

@@ -167,10 +167,15 @@ def _set_speed(following: NextArrays, k: int) -> SetSpeedOutcome:
 
 def held_places(bound: FloatArray, speed_mps: FloatArray) -> list[Hold]:
     """Return the holds of a stored profile: which bound cut each node, and its speed, per node."""
-    first = np.flatnonzero(np.diff(bound, prepend=np.nan) != 0.0)
-    behind = np.append(first[1:], len(bound))
     return [
-        Hold(int(bound[a]), a, b - 1.0, speed_mps[a:b].min(), speed_mps[a:b].max())
-        for a, b in zip(first.tolist(), behind.tolist(), strict=True)
-        if bound[a] > BOUND_NONE
+        Hold(int(code), a, b, speed_mps[a : b + 1].min(), speed_mps[a : b + 1].max())
+        for a, b, code in equal_runs(bound)
+        if code > BOUND_NONE
     ]
+
+
+def equal_runs(values: FloatArray) -> list[tuple[int, int, float]]:
+    """Return (first, last, value) of each run of equal values."""
+    starts = np.flatnonzero(np.diff(values, prepend=np.nan) != 0.0)
+    ends = np.append(starts[1:] - 1, len(values) - 1)
+    return [(int(a), int(b), float(values[a])) for a, b in zip(starts, ends, strict=True)]

@@ -12,6 +12,7 @@ from ..findings import Finding
 from ..recordings.derived import NO_SET_SPEED
 from ..recordings.recording import Recording
 from ..study.drive_row import DriveRow
+from ..study.own_files import DRIVES, RECORDINGS
 from .drives_table import read_drives, row_of_recording
 from .exclusions import EXCLUSIONS
 from .problems import brought_together, findings_of
@@ -55,8 +56,8 @@ def gather(study: StudyFolder, reading: Reading) -> Gathered:
     Raises:
         ModelError: there is neither.
     """
-    table = study.folder / "drives.csv"
-    found = Gathered(table if table.exists() else study.folder / "recordings")
+    table = study.folder / DRIVES
+    found = Gathered(table if table.exists() else study.folder / RECORDINGS)
     if table.exists():
         _read_table(study, found)
     elif not study.files():

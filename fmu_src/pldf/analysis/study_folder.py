@@ -19,6 +19,7 @@ from ..recordings.mapping import RecordingMap, remembered_map
 from ..recordings.recording import Recording, read_recording
 from ..roads import Route
 from ..study.drive_row import PHASE
+from ..study.own_files import PROFILES, RECORDINGS, STUDY
 from ..study.phases import PHASES, Phase
 from ..study.study_tables import StudyTables
 from ..toml_file import TomlFile
@@ -68,7 +69,7 @@ class StudyFolder:
     @cached_property
     def survey(self) -> SurveyMap:
         """What columns and answers of the questionnaire mean."""
-        found = self.map or remembered_map(self.folder / "questionnaire.csv")
+        found = self.map or remembered_map(self.folder / SurveyMap.file)
         return survey_map(found.questionnaire, found.name) if found else SurveyMap()
 
     @property
@@ -79,7 +80,7 @@ class StudyFolder:
     @cached_property
     def study_file(self) -> Mapping[str, Any]:
         """The study file that a simulation left in the folder; empty for real participants."""
-        path = self.folder / "study.toml"
+        path = self.folder / STUDY
         if not path.exists():
             return {}
         file = TomlFile(path)
@@ -166,7 +167,7 @@ class StudyFolder:
 
     @property
     def _entries(self) -> list[Path]:
-        found = sorted((self.folder / "recordings").glob("*.*"))
+        found = sorted((self.folder / RECORDINGS).glob("*.*"))
         return [path for path in found if not path.name.startswith(".")]
 
     def read(self, path: Path) -> Recording:
@@ -206,23 +207,23 @@ class StudyFolder:
     @cached_property
     def _function(self) -> DrivingFunction:
         """The function on the route, with the base profile."""
-        function = DrivingFunction()
-        assert self.route is not None
-        function.prepare(self.route)
-        return function
+        return self._prepared()
 
     @cached_property
     def _follower(self) -> DrivingFunction:
         """The same, for profiles that were learned."""
-        function = DrivingFunction()
+        return self._prepared()
+
+    def _prepared(self) -> DrivingFunction:
         assert self.route is not None
+        function = DrivingFunction()
         function.prepare(self.route)
         return function
 
     @cached_property
     def _profiles(self) -> Profiles | None:
         """The learned profiles, if they are there."""
-        folder = self.profiles or self.folder / "profiles"
+        folder = self.profiles or self.folder / PROFILES
         if self.route is None or not (self.profiles or folder.is_dir()):
             return None
         return Profiles(folder, self.route, self.order())

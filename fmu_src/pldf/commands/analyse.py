@@ -18,7 +18,7 @@ from ..analysis.published import DRIVERS, TESTS, published_means
 from ..analysis.questionnaires import SCALES, Questionnaire
 from ..analysis.study_folder import StudyFolder
 from .shared.mapping import add_map, chosen_map, remember_map
-from .shared.progress import progress_bar
+from .shared.progress import recordings_bar
 from .shared.road import add_road, chosen_road
 from .shared.telling import tell
 
@@ -82,11 +82,8 @@ def run(options: argparse.Namespace) -> None:
     study = StudyFolder(
         options.folder, route, frozenset(options.without), chosen_map(options), options.profiles
     )
-    with progress_bar("read", 1.0, "recordings") as bar:  # analyse tells how many there are
-        task = bar.task_ids[0]
-        analysis, checks = analysed(
-            study, lambda done, all_: bar.update(task, completed=done, total=all_)
-        )
+    with recordings_bar("read") as reading:
+        analysis, checks = analysed(study, reading)
     answers = analysis.questionnaire.notes if analysis.questionnaire else ()
     tell(n for n in analysis.notes if n.severity == "warning" or n not in answers)
     remember_map(options, options.folder)  # one that could not be used is not worth keeping

@@ -28,7 +28,7 @@ from ..recordings.quality import Quality
 from ..recordings.suggest import suggest_map
 from ..roads import Road, route_arrays
 from .shared.mapping import add_map, chosen_map
-from .shared.progress import progress_bar
+from .shared.progress import recordings_bar
 from .shared.road import add_road, chosen_road, default_limit_mps
 
 EXAMPLE: Final = (
@@ -97,11 +97,8 @@ def _study(
     folder: Path, road: Road | None, mapping: RecordingMap | None, without: Sequence[str]
 ) -> Checks:
     study = StudyFolder(folder, road.route if road else None, frozenset(without), mapping)
-    with progress_bar("check", 1.0, "recordings") as bar:
-        task = bar.task_ids[0]
-        return check_folder(
-            with_own_road(study), lambda done, all_: bar.update(task, completed=done, total=all_)
-        )
+    with recordings_bar("check") as reading:
+        return check_folder(with_own_road(study), reading)
 
 
 def _files_in(folder: Path) -> list[Path]:

@@ -30,6 +30,7 @@ from ..profiles.store import (
     rollback_profile,
 )
 from ..profiles.stored_profile import Iteration
+from ..recordings.interventions import runs
 
 EXAMPLE: Final = """pldf profiles list --store profiles
   pldf profiles show profiles/driver-000017_route-0123456789abcdef.pldf --plot profile.png
@@ -168,20 +169,20 @@ def _show(options: argparse.Namespace) -> None:
 
 
 def _print_places(title: str, difference_mps: FloatArray, iteration: Iteration) -> None:
-    places = _runs(np.abs(difference_mps) > _SHOWN_MPS)
+    places = runs(np.abs(difference_mps) > _SHOWN_MPS)
     if not places:
         print(f"{title}: none")
         return
     print(
         f"{title}:\n{'from m':>9} {'to m':>9} {'mean km/h':>10} {'peak km/h':>10} lessons  cut by"
     )
-    for first, last in places:
-        kmh = difference_mps[first : last + 1] * KMH_PER_MPS
+    for first, behind in places:
+        kmh = difference_mps[first:behind] * KMH_PER_MPS
         peak = kmh[np.argmax(np.abs(kmh))]
-        lessons = int(iteration.lessons[first : last + 1].max())
+        lessons = int(iteration.lessons[first:behind].max())
         print(
-            f"{first:9} {last:9} {kmh.mean():+10.1f} {peak:+10.1f} {lessons:7}  "
-            f"{_bounds(iteration.bound[first : last + 1])}"
+            f"{first:9} {behind - 1:9} {kmh.mean():+10.1f} {peak:+10.1f} {lessons:7}  "
+            f"{_bounds(iteration.bound[first:behind])}"
         )
 
 
@@ -197,12 +198,6 @@ def _bounds(codes: FloatArray) -> str:
     """Return the bounds that cut a place, by name, or a dash."""
     names = [BOUND.items[int(code)].lower() for code in np.unique(codes) if code > 0.0]
     return ", ".join(names) or "-"
-
-
-def _runs(flags: np.ndarray[tuple[int], np.dtype[np.bool]]) -> list[tuple[int, int]]:
-    """Return first and last index of each run of true values."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False]))))
-    return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def _history(options: argparse.Namespace) -> None:

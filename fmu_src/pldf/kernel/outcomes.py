@@ -5,8 +5,9 @@ from __future__ import annotations
 from .arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays
 from .codes import OUTCOME_NOT_MOVED
 from .interpolation import cell_at
+from .pieces import ends_of_piece
 from .state import PldfState
-from .stretch import source_position, stretch_factor, stretched_position
+from .stretch import source_position, stretch_factor
 
 
 def tell_outcomes(
@@ -40,14 +41,6 @@ def tell_outcomes(
     _find_holds(st, following)
 
 
-def _ends_of_piece(st: PldfState, trace: TraceArrays, k: int, alpha: float) -> tuple[int, int]:
-    """Return the first and the last node that the stretched piece of intervention ``k`` touches."""
-    nodes = len(trace.gap)
-    start = stretched_position(trace.start_m[k], trace.end_m[k], alpha)
-    first = max(cell_at(nodes, start), st.first_node)
-    return first, min(cell_at(nodes, trace.end_m[k]), st.first_node + st.nodes - 1)
-
-
 def _measure_holes(
     st: PldfState, trace: TraceArrays, following: NextArrays, k: int, alpha: float
 ) -> None:
@@ -56,7 +49,7 @@ def _measure_holes(
     The samples around a hole are not known, only the nodes: each up to a metre before them.
     """
     end = st.first_node + st.nodes - 1
-    i, last = _ends_of_piece(st, trace, k, alpha)
+    i, last = ends_of_piece(st, trace, k, alpha)
     while i > st.first_node and trace.gap[i] > 0.0 and trace.gap[i - 1] > 0.0:
         i -= 1
     while i <= last or (i <= end and trace.gap[i] > 0.0):
@@ -71,7 +64,7 @@ def _count_barred(
 ) -> None:
     """Count the nodes of the stretched piece where learning was not allowed, there or recorded."""
     end = st.first_node + st.nodes - 1
-    first, last = _ends_of_piece(st, trace, k, alpha)
+    first, last = ends_of_piece(st, trace, k, alpha)
     for i in range(first, last + 1):
         recorded = min(source_position(float(i), trace.end_m[k], alpha), float(end))
         eligible = trace.eligible[cell_at(len(trace.gap), recorded)]

@@ -6,7 +6,13 @@ from .arrays import Floats, RouteArrays, TraceArrays, Work
 from .codes import OUTCOME_HOLE, OUTCOME_NOT_ELIGIBLE, OUTCOME_NOT_MOVED, OUTCOME_STOP
 from .interpolation import cell_at, value_at
 from .state import PldfState
-from .stretch import joined_speed, source_position, stretch_factor, stretched_position
+from .stretch import (
+    joined_speed,
+    largest,
+    source_position,
+    stretch_factor,
+    stretched_position,
+)
 
 NOT_LEARNED = -1.0  # marks of a node: nothing may be learned here
 FREE = 0.0  # the driver did not intervene; 1, 2, ... = number of the intervention
@@ -35,9 +41,8 @@ def _insert_piece(st: PldfState, trace: TraceArrays, work: Work, k: int, alpha: 
     d_n = trace.end_m[k]
     start = stretched_position(trace.start_m[k], d_n, alpha)
     end = st.first_node + st.nodes - 1
-    first = max(cell_at(len(work.a), start), st.first_node)
-    last = min(cell_at(len(work.a), d_n), end)
-    hole = _largest_gap(trace, first, last) > 0.0
+    first, last = ends_of_piece(st, trace, k, alpha)
+    hole = largest(trace.gap, float(first), float(last)) > 0.0
     slowest = trace.speed_mps[last]
     if first < start:
         first += 1
@@ -60,11 +65,12 @@ def _insert_piece(st: PldfState, trace: TraceArrays, work: Work, k: int, alpha: 
     return OUTCOME_STOP if slowest < st.learning_speed_min_mps else outcome
 
 
-def _largest_gap(trace: TraceArrays, first: int, last: int) -> float:
-    result = 0.0
-    for i in range(first, last + 1):
-        result = max(result, trace.gap[i])
-    return result
+def ends_of_piece(st: PldfState, trace: TraceArrays, k: int, alpha: float) -> tuple[int, int]:
+    """Return the first and the last node that the stretched piece of intervention ``k`` touches."""
+    nodes = len(trace.gap)
+    start = stretched_position(trace.start_m[k], trace.end_m[k], alpha)
+    first = max(cell_at(nodes, start), st.first_node)
+    return first, min(cell_at(nodes, trace.end_m[k]), st.first_node + st.nodes - 1)
 
 
 def _stretched_speed(trace: TraceArrays, start: float, k: int, d: float) -> float:

@@ -27,7 +27,8 @@ def apart(recording: Recording, file: str) -> Iterator[Finding]:
     if not len(rows):
         return
     ends, passed_s = behind[rows], time_s[behind[rows]] - time_s[rows]
-    off_mps = np.abs(driven_m(recording)[ends] - driven_m(recording)[rows] - s_m[ends] + s_m[rows])
+    by_speed = driven_m(recording)
+    off_mps = np.abs(by_speed[ends] - by_speed[rows] - s_m[ends] + s_m[rows])
     off_mps /= passed_s
     steps_m = np.diff(np.unique(s_m))
     rounded_mps = (2.0 * steps_m.min() if len(steps_m) else 0.0) / _WINDOW_S

@@ -18,6 +18,7 @@ from ..kernel.arrays import FloatArray
 from ..kernel.codes import GAS_OVERRIDE, STANDBY
 from ..kernel.units import KMH_PER_MPS
 from .columns import COLUMNS
+from .quality import cells_of
 from .recording import Recording
 
 # Decision: a set speed that changes up to this long before or after a sign changes because of it: a
@@ -108,9 +109,8 @@ class _Road:
     """Values along a road at the positions of a recording."""
 
     def __init__(self, function: DrivingFunction, s_m: FloatArray) -> None:
-        nodes = len(function.route.limit_mps)
-        self._s_m, self._node = s_m, np.arange(float(nodes))
-        self._cell = np.clip(np.floor(s_m), 0, nodes - 1).astype(np.intp)
+        self._s_m, self._node = s_m, np.arange(float(len(function.route.limit_mps)))
+        self._cell = cells_of(s_m, function.route)
 
     def per_cell(self, values: object) -> FloatArray:
         found: FloatArray = np.asarray(values, dtype=np.float64)[self._cell]

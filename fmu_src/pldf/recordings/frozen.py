@@ -9,6 +9,7 @@ import numpy as np
 
 from ..findings import Finding
 from ..kernel.arrays import FloatArray
+from .interventions import runs
 from .quality import HOLE_S
 from .recording import Recording
 
@@ -24,9 +25,10 @@ _TOLD: Final = 3
 
 def frozen(recording: Recording, file: str) -> Iterator[Finding]:
     """Yield where position or speed stand still, or jump, while the other one does not."""
-    yield from _frozen_position(recording, file)
+    by_speed = driven_m(recording)
+    yield from _frozen_position(recording, by_speed, file)
     yield from _frozen_speed(recording, file)
-    yield from _position_jumps(recording, file)
+    yield from _position_jumps(recording, by_speed, file)
     yield from _speed_jumps(recording, file)
 
 
@@ -37,8 +39,8 @@ def driven_m(recording: Recording) -> FloatArray:
     return np.concatenate(([0.0], np.cumsum(steps)))
 
 
-def _frozen_position(recording: Recording, file: str) -> Iterator[Finding]:
-    time, s, by_speed = recording["time_s"], recording["s_m"], driven_m(recording)
+def _frozen_position(recording: Recording, by_speed: FloatArray, file: str) -> Iterator[Finding]:
+    time, s = recording["time_s"], recording["s_m"]
     stands = [
         (a, b)
         for a, b in _constant(s)
@@ -80,8 +82,8 @@ def _frozen_speed(recording: Recording, file: str) -> Iterator[Finding]:
         )  # fmt: skip
 
 
-def _position_jumps(recording: Recording, file: str) -> Iterator[Finding]:
-    time, s, by_speed = recording["time_s"], recording["s_m"], driven_m(recording)
+def _position_jumps(recording: Recording, by_speed: FloatArray, file: str) -> Iterator[Finding]:
+    time, s = recording["time_s"], recording["s_m"]
     passed_s = np.diff(time)
     off = np.diff(s) - np.diff(by_speed)
     # Within a step the speed can have been anything that brakes and power allow.
@@ -121,11 +123,9 @@ def _speed_jumps(recording: Recording, file: str) -> Iterator[Finding]:
         )  # fmt: skip
 
 
-def _constant(values: FloatArray) -> Iterator[tuple[int, int]]:
-    """Yield first and last row of each run of two or more equal values."""
-    same = np.diff(values) == 0.0
-    edges = np.flatnonzero(np.diff(same.astype(np.int8), prepend=0, append=0))
-    yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+def _constant(values: FloatArray) -> list[tuple[int, int]]:
+    """Return first and last row of each run of two or more equal values."""
+    return runs(np.diff(values) == 0.0)
 
 
 def _listed(told: list[str], count: int) -> str:

@@ -47,7 +47,7 @@ def pedal_interventions(recording: Recording) -> list[Interval]:
     gas = mode == GAS_OVERRIDE
     inactive = (gas | (mode == STANDBY)) & _after_activation(mode)
     intervals: list[Interval] = []
-    for first, behind in _runs(inactive):
+    for first, behind in runs(inactive):
         start = _start(recording, first, behind)
         if start < 0:
             continue
@@ -70,7 +70,7 @@ def set_speed_interventions(recording: Recording) -> list[Interval]:
         return []
     active = np.abs(recording["set_speed_offset_mps"]) > OFFSET_TOLERANCE_MPS
     last_row = len(recording) - 1
-    return [Interval("set_speed", a, min(b, last_row)) for a, b in _runs(active)]
+    return [Interval("set_speed", a, min(b, last_row)) for a, b in runs(active)]
 
 
 def rates_of(recording: Recording) -> Rates:
@@ -115,7 +115,7 @@ def _marked(intervals: list[Interval], rows: int) -> NDArray[np.bool_]:
     return marks
 
 
-def _runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
+def runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """Return first row and row behind the last of each run of true values."""
     edges = np.flatnonzero(np.diff(flags.astype(np.int8), prepend=0, append=0))
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]

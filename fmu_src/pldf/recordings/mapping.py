@@ -25,7 +25,7 @@ from .units import unit_named, units_of
 
 MAP_FILE: Final = "map.toml"  # in the folder of a study
 
-_PARTS: Final = ("recording", "mode", "eligible", "questionnaire")
+PARTS: Final = ("recording", "mode", "eligible", "questionnaire")
 _ENTRIES: Final = ("column", "plus", "unit", "factor", "add", "value")
 _EXAMPLE: Final = '{ column = "Speed", unit = "km/h" }'
 _COLUMNS: Final = {column.name: column for column in RECORDING.columns}
@@ -175,10 +175,10 @@ def dotted(key: Key) -> str:
 def _wrong(file: TomlFile) -> Iterator[tuple[Key, str]]:
     """Yield all that is wrong with a mapping file: key, and what is wrong with it."""
     for part, content in file.table.items():
-        if part in _COLUMNS and part not in _PARTS:
+        if part in _COLUMNS and part not in PARTS:
             yield (part,), "stands outside of [recording]; write it below that line"
-        elif part not in _PARTS:
-            yield (part,), _unknown(part, _PARTS)
+        elif part not in PARTS:
+            yield (part,), _unknown(part, PARTS)
         elif not isinstance(content, Mapping):
             yield (part,), f"{shown(content)} is no table; write [{part}] and a line below it"
         else:

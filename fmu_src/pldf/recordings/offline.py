@@ -12,7 +12,6 @@ from ..errors import ModelError
 from ..findings import Finding
 from ..function import DrivingFunction
 from ..instance import view
-from ..kernel.arrays import FloatArray
 from ..kernel.codes import (
     BOUND,
     BOUND_LEGAL_LIMIT,
@@ -24,7 +23,7 @@ from ..kernel.replay import Samples, replay
 from ..kernel.stretch import stretch_factor, stretched_position
 from ..kernel.units import KMH_PER_MPS
 from ..outcome_words import NOT_LEARNED, TEXTS, pedal_words, set_speed_words
-from ..outcomes import Hold, Outcomes, PedalOutcome, SetSpeedOutcome
+from ..outcomes import Hold, Outcomes, PedalOutcome, SetSpeedOutcome, equal_runs
 from ..profiles.store import Iteration, StoredProfile
 from ..roads import Route, fingerprint
 from .derived import completed
@@ -216,7 +215,7 @@ def _segments(learned: Learned) -> list[dict[str, Any]]:
             "mean_change_mps": float(change[start : end + 1].mean()),
             "largest_change_mps": float(max(change[start : end + 1], key=abs)),
         }
-        for start, end, cause in _runs(np.where(touched, new.intervention, -1.0))
+        for start, end, cause in equal_runs(np.where(touched, new.intervention, -1.0))
         if cause >= 0.0
     ]
 
@@ -225,13 +224,6 @@ def _offsets(learned: Learned) -> list[dict[str, Any]]:
     """Runs of cells with the same learned offset."""
     return [
         {"start_m": start, "end_m": end + 1, "offset_mps": value}
-        for start, end, value in _runs(learned.iteration.offset_mps)
+        for start, end, value in equal_runs(learned.iteration.offset_mps)
         if value != 0.0
     ]
-
-
-def _runs(values: FloatArray) -> list[tuple[int, int, float]]:
-    """Return (first, last, value) of each run of equal values."""
-    starts = np.flatnonzero(np.diff(values, prepend=np.nan) != 0.0)
-    ends = np.append(starts[1:] - 1, len(values) - 1)
-    return [(int(a), int(b), float(values[a])) for a, b in zip(starts, ends, strict=True)]

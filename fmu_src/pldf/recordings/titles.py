@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..files.tables import meant_names, misspelt
+from ..files.tables import meant_names, misspelt, told_meant, told_misspelt
 from ..findings import Finding
 from .columns import RECORDING
 from .inputs import Input
@@ -16,12 +16,10 @@ def with_meant_names(file: Input, mapping: RecordingMap, notes: list[Finding]) -
     ours = [column.name for column in RECORDING.columns if column.name not in mapping.columns]
     meant = meant_names(file.names, ours)
     for title, name in meant.items():
-        text = f"the column {title!r} is read as {name}"
-        notes.append(Finding("note", str(file.path), 0, name, text))
+        notes.append(Finding("note", str(file.path), 0, name, told_meant(title, name)))
     absent = [name for name in ours if name not in file.names and name not in meant.values()]
     others = [name for name in file.names if name not in meant and name not in RECORDING.names]
     for title, name in misspelt(others, absent).items():
-        text = f"the column {title!r} is not known and passed over; is {name} meant?"
-        notes.append(Finding("warning", str(file.path), 0, name, text))
+        notes.append(Finding("warning", str(file.path), 0, name, told_misspelt(title, name)))
     sources = {name: Source(0, (title,)) for title, name in meant.items()}
     return replace(mapping, columns={**mapping.columns, **sources})

@@ -22,15 +22,15 @@ from ..kernel.signals import signals_of
 from ..outcome_words import lines_of
 from ..profiles.stored_profile import Iteration, StoredProfile
 from ..recordings.offline import learn_from
+from ..recordings.quality import cells_of
 from ..recordings.recording import Recording
 from ..recordings.steps import Steps, explain_steps
 from ..roads import Route, fingerprint, open_route, route_arrays
 from ..route_facts import RouteFacts, route_facts
+from ..study.own_files import STUDY, VERSIONS
 from ..study.participants_file import PARTICIPANTS
 from .own_versions import read_parameters, read_text
 
-STUDY: Final = "study.toml"
-VERSIONS: Final = "versions.json"
 LONG_RUN: Final = "long_run.csv"
 _SAME_LIMIT_MPS: Final = 0.1
 _SAME_LIMIT_SHARE: Final = 0.95
@@ -264,9 +264,9 @@ def _outcomes(
 
 def _require_route(path: Path, recording: Recording, route: Route) -> None:
     """Raise ModelError unless the recorded limits are those of the route."""
-    limit = np.asarray(route_arrays(route).limit_mps)
-    cell = np.clip(np.floor(recording["s_m"]), 0, len(limit) - 1).astype(np.intp)
-    same = np.abs(recording["limit_mps"] - limit[cell]) < _SAME_LIMIT_MPS
+    arrays = route_arrays(route)
+    limit = np.asarray(arrays.limit_mps)[cells_of(recording["s_m"], arrays)]
+    same = np.abs(recording["limit_mps"] - limit) < _SAME_LIMIT_MPS
     if np.mean(same) < _SAME_LIMIT_SHARE:
         raise ModelError(
             f"{path}: not driven on {route.name}: other limits; name the route with --route"

@@ -28,7 +28,8 @@ from ..findings import Finding
 from ..kernel.signals import Signal, signals_of
 from ..kernel.state import PldfState
 from ..roads import fingerprint
-from .contents import VERSIONS, Contents
+from ..study.own_files import VERSIONS
+from .contents import Contents
 from .figures.shares import RATE_TITLES
 from .figures.study import study_figures
 from .screen import html_of

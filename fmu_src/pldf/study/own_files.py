@@ -18,7 +18,9 @@ VERSIONS: Final = "versions.json"
 PARTS: Final = "parts"
 DAMAGED: Final = "damaged"
 TABLES: Final = (DRIVES, PARTICIPANTS, STUDY, VERSIONS)
-FOLDERS: Final = (PARTS, DAMAGED, "recordings", "profiles")
+RECORDINGS: Final = "recordings"
+PROFILES: Final = "profiles"
+FOLDERS: Final = (PARTS, DAMAGED, RECORDINGS, PROFILES)
 
 # The one driver's study of release 0.1.0, which had a folder of another kind.
 _OLD_STUDY: Final = "study.json"
@@ -28,12 +30,12 @@ _PROFILE: Final = r"driver-\d{6,}_route-[0-9a-zA-Z]+\.pldf"
 _INSIDE: Final = {
     PARTS: r"P\d+\.json",
     DAMAGED: r"P\d+-\d+\.json",
-    "recordings": r"P\d+_[AB]\d+\.csv",
-    "profiles": _PROFILE,
+    RECORDINGS: r"P\d+_[AB]\d+\.csv",
+    PROFILES: _PROFILE,
 }
 _OLD_INSIDE: Final = {
-    "recordings": r"[AB]\d\.csv",
-    "profiles": _PROFILE,
+    RECORDINGS: r"[AB]\d\.csv",
+    PROFILES: _PROFILE,
     "profile_after": r"[AB]\d\.csv",
 }
 _UNFINISHED: Final = r"(\.tmp)?"  # of ``replace_file``, when the process was killed

@@ -16,20 +16,20 @@ from ...recordings.against_road import COVERAGE
 from ...recordings.mapping import MAP_FILE
 from ...recordings.recording import Recording
 from ...roads import route_arrays
+from ...study.own_files import DRIVES, PARTICIPANTS, PROFILES, RECORDINGS, STUDY
 from ...study.study_file import read_study
 from ..analysis import Analysis, analyse
 from ..exclusions import EXCLUSIONS
 from ..gathered import Reading
 from ..problems import StudyError, findings_of
+from ..questionnaires import SurveyMap
 from ..study_folder import StudyFolder
 from .checked import CheckedFile, Checks
 from .files import Known, check_file, check_recording, checked_recording
 from .names import people
 
-RECORDINGS: Final = "recordings"
-_STUDY: Final = "study.toml"
-_MARKS: Final = (RECORDINGS, "drives.csv", "questionnaire.csv", _STUDY, "participants.csv")
-_TABLES: Final = (_STUDY, MAP_FILE, EXCLUSIONS, "participants.csv", "drives.csv")
+_MARKS: Final = (RECORDINGS, DRIVES, SurveyMap.file, STUDY, PARTICIPANTS)
+_TABLES: Final = (STUDY, MAP_FILE, EXCLUSIONS, PARTICIPANTS, DRIVES)
 _HALF: Final = 0.9  # of the way that the others drive
 
 
@@ -52,7 +52,7 @@ def check_folder(study: StudyFolder, reading: Reading = _silently) -> Checks:
     _, checks = _analysed(study, reading, every_recording=True)
     known = Known(map=study.map)
     tables = [study.folder / name for name in _TABLES]
-    tables += sorted((study.folder / "profiles").glob("*.pldf"))
+    tables += sorted((study.folder / PROFILES).glob("*.pldf"))
     with suppress(ModelError):  # if its map is wrong, that is among the findings
         tables.append(study.questionnaire)
     return checks + Checks(tuple(check_file(path, known) for path in tables if path.exists()))
@@ -164,7 +164,7 @@ def _with(file: CheckedFile, finding: Finding) -> CheckedFile:
 
 def with_own_road(study: StudyFolder) -> StudyFolder:
     """Return a simulated study with the road of its study file, if none was named."""
-    path = study.folder / _STUDY
+    path = study.folder / STUDY
     if study.route is not None or not path.exists():
         return study
     try:

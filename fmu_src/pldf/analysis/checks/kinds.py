@@ -13,6 +13,7 @@ from ...files.tables import Column, Format, read_header
 from ...profiles.file_parts import MAGIC
 from ...recordings.columns import RECORDING
 from ...recordings.inputs import SUFFIXES
+from ...recordings.mapping import PARTS
 from ...roads.csv_file import ROUTE
 from ...study.drive_row import DRIVES
 from ...study.participants_file import PARTICIPANTS
@@ -38,7 +39,6 @@ _FORMATS: Final[dict[Kind, Format]] = {
     "driver script": SCRIPT,
 }
 _FITS: Final = 0.5  # share of the needed columns that tells what a table is
-_MAP_TABLES: Final = frozenset(("recording", "mode", "eligible", "questionnaire"))
 _TABLE_SUFFIXES: Final = (".csv", ".tsv", ".txt", "")
 # Files with another ending are checked when they are named, not when a folder is.
 KNOWN_SUFFIXES: Final = tuple(
@@ -77,7 +77,7 @@ def _kind_of_toml(path: Path) -> Kind:
         content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, ValueError):
         return "study file"  # its reader says what is wrong
-    return "mapping file" if _MAP_TABLES.intersection(content) == content.keys() else "study file"
+    return "mapping file" if content.keys() <= set(PARTS) else "study file"
 
 
 def _kind_of_table(path: Path) -> Kind:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -41,3 +41,11 @@ def progress_bar(description: str, total: float, unit: str) -> Iterator[Progress
     ) as bar:
         bar.add_task(description, total=total)
         yield bar
+
+
+@contextmanager
+def recordings_bar(description: str) -> Iterator[Callable[[int, int], None]]:
+    """Show a bar over recordings; yields what to call with the number done and of all."""
+    with progress_bar(description, 1.0, "recordings") as bar:  # the total is told with each
+        task = bar.task_ids[0]
+        yield lambda done, all_: bar.update(task, completed=done, total=all_)

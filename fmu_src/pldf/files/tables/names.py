@@ -35,5 +35,15 @@ def misspelt(unknown: Iterable[str], absent: Sequence[str]) -> dict[str, str]:
     return {title: names[0] for title, names in near.items() if names}
 
 
+def told_meant(title: str, name: str) -> str:
+    """Say that a title was taken for a known name."""
+    return f"the column {title!r} is read as {name}"
+
+
+def told_misspelt(title: str, name: str) -> str:
+    """Say that a title was passed over, and what it may be."""
+    return f"the column {title!r} is not known and passed over; is {name} meant?"
+
+
 def _plain(name: str) -> str:
     return re.sub(r"[\s_.\u200b-]+", "_", name).strip("_").casefold()

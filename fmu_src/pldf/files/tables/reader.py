@@ -24,7 +24,7 @@ from ..disk import reason
 from .cells import allowed, values_of, why_wrong, with_points
 from .content import Content, content_of
 from .declared import Column, Fault, Format, TableError
-from .names import meant_names, misspelt
+from .names import meant_names, misspelt, told_meant, told_misspelt
 from .told import how_written, rows_in_comments
 from .writer import plain_text
 
@@ -244,7 +244,7 @@ def _positions(table: Table, header: Sequence[str]) -> dict[str, int]:
     form = table.form
     meant = meant_names(header, form.names)
     for title, name in meant.items():
-        table.note(table.header_line, name, f"the column {title[:_CELL_MAX]!r} is read as {name}")
+        table.note(table.header_line, name, told_meant(title[:_CELL_MAX], name))
     names = [meant.get(name, name) for name in header]
     # R writes the numbers of the rows into a first column without a name.
     unknown = [name for name in names if name and name not in form.names]
@@ -257,8 +257,7 @@ def _positions(table: Table, header: Sequence[str]) -> dict[str, int]:
     if told:
         table.refuse([Fault(table.header_line, "", f"{'; '.join(told)}; {_has(form)}")])
     for title, name in misspelt(unknown, [n for n in form.names if n not in names]).items():
-        told_ = f"the column {title[:_CELL_MAX]!r} is not known and passed over; is {name} meant?"
-        table.note(table.header_line, name, told_)
+        table.note(table.header_line, name, told_misspelt(title[:_CELL_MAX], name))
     return {name: names.index(name) for name in form.names if name in names}
 
 
