@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as hs
 from laboratory import function, play, road, travel_times, within
 from pldf.function import DrivingFunction
@@ -117,6 +117,7 @@ places = hs.lists(hs.floats(5.0, 990.0), min_size=2, max_size=12, unique=True).m
 
 
 @settings(deadline=None, max_examples=60)
+@example([5.0, 99.0], [1.0, 1.0, 1.0], [100.0, 102.0])  # a hole just behind the intervention
 @given(places, hs.lists(hs.floats(1.0, 45.0), min_size=3, max_size=8), places)
 def test_whatever_is_driven_what_is_told_fits_what_was_learned(
     pressed: list[float], speeds: list[float], lost: list[float]

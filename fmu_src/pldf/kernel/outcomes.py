@@ -52,7 +52,8 @@ def _measure_holes(
     i, last = ends_of_piece(st, trace, k, alpha)
     while i > st.first_node and trace.gap[i] > 0.0 and trace.gap[i - 1] > 0.0:
         i -= 1
-    while i <= last or (i <= end and trace.gap[i] > 0.0):
+    # A hole that begins behind the piece does not touch it.
+    while i <= last or (i <= end and min(trace.gap[i], trace.gap[i - 1]) > 0.0):
         if trace.gap[i] > 0.0:
             following.hole_m[k] += 1.0
             following.hole_s[k] += trace.time_s[i] - trace.time_s[max(i - 1, st.first_node)]
