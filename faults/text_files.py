@@ -15,7 +15,7 @@ import numpy as np
 from opendrive_text import SHAPES, geometry, lane, lanes, link, road, straight
 from pldf.errors import ModelError
 from pldf.recordings.recording import read_recording, recording_csv
-from pldf.roads import read_route, route_arrays
+from pldf.roads import RoadOptions, read_route, route_arrays
 from pldf.study.participants_file import read_participants
 from pldf.study.study_file import PACKAGED, read_study
 from sample_recording import sample_recording
@@ -106,7 +106,7 @@ def _town(shape: str) -> bytes:
 
 
 def _read_road(path: Path) -> None:
-    route = read_route(path, start_road="1", default_limit_mps=20.0)
+    route = read_route(path, RoadOptions(start_road="1", default_limit_mps=20.0))
     if route.nodes < NODES_MAX and not all(np.isfinite(a).all() for a in route_arrays(route)):
         raise AssertionError(f"{path}: not finite")
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from pldf.roads import Route, read_route
+from pldf.roads import RoadOptions, Route, read_route
 
 
 @pytest.fixture
@@ -15,6 +15,6 @@ def read(tmp_path: Path) -> Callable[..., Route]:
         path = tmp_path / "town.xodr"
         body = "\n".join(roads)
         path.write_text(f'{before}<?xml version="1.0"?>\n<OpenDRIVE>\n{body}\n</OpenDRIVE>\n')
-        return read_route(path, **options)  # type: ignore[arg-type]
+        return read_route(path, RoadOptions(**options))  # type: ignore[arg-type]
 
     return reader

@@ -9,7 +9,7 @@ import numpy as np
 from laboratory import files
 from pldf import cli
 from pldf.cosim.road_values import road_values
-from pldf.roads import open_road, read_route, route_arrays
+from pldf.roads import RoadOptions, open_road, read_route, route_arrays
 from pldf.roads.load import DATA, PACKED
 
 LIMIT_MPS = 50.0 / 3.6
@@ -36,7 +36,7 @@ def without_limits(folder: Path) -> Path:
 
 
 def test_the_fmus_are_handed_the_same_route_to_the_bit(tmp_path: Path) -> None:
-    road = open_road(str(without_limits(tmp_path)), default_limit_mps=LIMIT_MPS)
+    road = open_road(str(without_limits(tmp_path)), RoadOptions(default_limit_mps=LIMIT_MPS))
     told = road_values(road, tmp_path)
     again = read_route(str(told["route_file"]))
     for one, other in zip(route_arrays(road.route), route_arrays(again), strict=True):

@@ -29,7 +29,7 @@ from ..recordings.suggest import suggest_map
 from ..roads import Road, route_arrays
 from .shared.mapping import add_map, chosen_map
 from .shared.progress import recordings_bar
-from .shared.road import add_road, chosen_road, default_limit_mps
+from .shared.road import add_road, chosen_road, road_options
 
 EXAMPLE: Final = (
     "pldf check laboratory --route road.xodr\n"
@@ -75,8 +75,7 @@ def run(options: argparse.Namespace) -> int:
     known = Known(
         route_arrays(road.route) if road else None,
         mapping,
-        options.start_road,
-        default_limit_mps(options),
+        road_options(options),
     )
     checks, files = Checks(), list[CheckedFile]()
     for path in options.paths:

@@ -25,7 +25,7 @@ from .shared.coupling import (
     print_warnings,
 )
 from .shared.progress import progress_bar
-from .shared.road import default_limit_mps
+from .shared.road import road_options
 from .shared.settings import split_settings
 from .shared.telling import tell
 
@@ -41,7 +41,13 @@ EXAMPLE: Final = (
 _OF_ONE_DRIVER: Final[Mapping[str, tuple[str, Key]]] = {
     "road": ("--route", ("road", "route")),
     "start_road": ("--start-road", ("road", "start_road")),
+    "via": ("--via", ("road", "via")),
+    "to": ("--to", ("road", "to")),
+    "reverse": ("--reverse", ("road", "reverse")),
     "default_limit": ("--default-limit", ("road", "default_limit_mps")),
+    "limit_unit": ("--limit-unit", ("road", "limit_unit")),
+    "signs": ("--no-signs", ("road", "signs")),
+    "smoothing_m": ("--smoothing", ("road", "smoothing_m")),
     "driver_id": ("--driver-id", ("participants", "first")),
     "seed": ("--seed", ("participants", "seed")),
     "step": ("--step", ("drives", "step_s")),
@@ -117,7 +123,7 @@ def _study(options: argparse.Namespace) -> Study:
 
 def _changes(options: argparse.Namespace) -> dict[Key, Any]:
     """Return what the options change in the study file of the one driver."""
-    values = {**vars(options), "default_limit": default_limit_mps(options)}
+    values = {**vars(options), "default_limit": road_options(options).default_limit_mps}
     changed = {
         key: values[name]
         for name, (_, key) in _OF_ONE_DRIVER.items()

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from .csv_file import write_route_csv
 from .load import Road, chosen_route, open_road, open_route, packed_route, read_route
-from .route import Route, fingerprint, route_arrays
+from .options import AS_WRITTEN, RoadOptions
+from .route import Mark, Route, fingerprint, route_arrays
 
 __all__ = [
+    "AS_WRITTEN",
+    "Mark",
     "Road",
+    "RoadOptions",
     "Route",
     "chosen_route",
     "fingerprint",

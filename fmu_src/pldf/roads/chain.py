@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from ..errors import ModelError
+from ..findings import Finding
+from .options import RoadOptions
 from .xml_tree import Element, Place
 
 _FORWARD_END: Final = {False: "successor", True: "predecessor"}
@@ -36,15 +38,20 @@ class Network:
         if not self.roads:
             raise place.error(root, "no <road> in this file")
 
-    def chain(self, start_road: str | None) -> list[Leg]:
+    def way(self, options: RoadOptions, notes: list[Finding]) -> list[Leg]:
         """Follow the links from the start until the road ends or repeats.
 
-        ``start_road`` is driven along its direction. Without it the route starts at the only road
+        The start road is driven along its direction. Without one the route starts at the only road
         that nothing leads to; a closed loop starts at the first road of the file.
+
+        Args:
+            options: where the way starts and goes.
+            notes: gets what is told about it.
 
         Raises:
             ModelError: unknown or ambiguous start, a link to nowhere, a junction with a choice.
         """
+        start_road = options.start_road
         if start_road is None:
             return self._only_chain()
         if start_road not in self.roads:

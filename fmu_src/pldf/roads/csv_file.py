@@ -49,7 +49,11 @@ def parse_route_csv(data: bytes, path: Path) -> Route:
     if fault is not None:
         row, text = fault
         table.refuse([table.fault(row, "", text)])
-    return Route(name=path.stem, has_line="x_m" in table, notes=tuple(table.notes), **knots)
+    s_m, curvature, limit, grade, x_m, y_m = (knots[name] for name in COLUMNS)
+    return Route(
+        path.stem, s_m, curvature, limit, grade, x_m, y_m,
+        has_line="x_m" in table, notes=tuple(table.notes),
+    )  # fmt: skip
 
 
 def write_route_csv(route: Route, path: Path | str) -> None:

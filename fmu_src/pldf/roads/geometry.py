@@ -33,6 +33,10 @@ class Geometry(Protocol):
         """Return the signed curvature in 1/m."""
         ...
 
+    def heading(self, ds: FloatArray) -> FloatArray:
+        """Return the direction in rad, from the x axis to the left."""
+        ...
+
     def line(self, ds: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return x and y in metres."""
         ...
@@ -68,6 +72,10 @@ class LinearCurvature:
     def turn(self, ds: FloatArray) -> FloatArray:
         """Return the change of heading since the start, in rad."""
         return ds * (self.curvature_start_per_m + 0.5 * self._rate() * ds)
+
+    def heading(self, ds: FloatArray) -> FloatArray:
+        """Return the direction in rad, from the x axis to the left."""
+        return self.pose.heading_rad + self.turn(ds)
 
     def line(self, ds: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return x and y in metres; a spiral's Fresnel integral is summed metre by metre."""
@@ -107,6 +115,12 @@ class Polynomial:
         u2, v2 = _bend(self.u, p), _bend(self.v, p)
         bent: FloatArray = (u1 * v2 - v1 * u2) / np.hypot(u1, v1) ** 3
         return bent
+
+    def heading(self, ds: FloatArray) -> FloatArray:
+        """Return the direction in rad, from the x axis to the left."""
+        p = self._at(ds)
+        direction: FloatArray = np.arctan2(_slope(self.v, p), _slope(self.u, p))
+        return self.pose.heading_rad + direction
 
     def line(self, ds: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return x and y in metres."""

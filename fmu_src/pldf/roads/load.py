@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -9,6 +10,7 @@ from typing import Final
 from ..errors import ModelError
 from .csv_file import parse_route_csv
 from .opendrive import parse_opendrive
+from .options import AS_WRITTEN, LimitUnit, RoadOptions
 from .route import Route
 
 DATA: Final = Path(__file__).parent / "data"
@@ -17,15 +19,12 @@ PACKED: Final = ("study_road.xodr",)
 STUDY_ROAD_ID: Final = 0
 
 
-def read_route(
-    path: Path | str, *, start_road: str | None = None, default_limit_mps: float | None = None
-) -> Route:
+def read_route(path: Path | str, options: RoadOptions = AS_WRITTEN) -> Route:
     """Read an OpenDRIVE or route CSV file, told apart by content.
 
     Args:
         path: the file.
-        start_road: id of the OpenDRIVE road to start with; default: the only possible one.
-        default_limit_mps: limit for OpenDRIVE roads that state none.
+        options: how it is to be read.
 
     Raises:
         ModelError: when the file cannot be read or used; names file, line and way out.
@@ -38,9 +37,7 @@ def read_route(
     if not data.strip():
         raise ModelError(f"{path}: the file is empty")
     if b"<OpenDRIVE" in data or path.suffix.lower() in (".xodr", ".xml"):
-        return parse_opendrive(
-            data, path, start_road=start_road, default_limit_mps=default_limit_mps
-        )
+        return parse_opendrive(data, path, options)
     return parse_route_csv(data, path)
 
 
@@ -52,7 +49,7 @@ class Road:
         route: the route.
         route_id: its number among the packed routes; None: it comes from ``file``.
         file: the file, as the person named it; a packed one's own file.
-        as_it_is: number or file alone give this route, without start road and default limit.
+        as_it_is: number or file alone give this route, without options.
     """
 
     route: Route
@@ -61,39 +58,53 @@ class Road:
     as_it_is: bool
 
 
-def open_road(
-    name: str, *, start_road: str | None = None, default_limit_mps: float | None = None
-) -> Road:
+def open_road(name: str, options: RoadOptions = AS_WRITTEN) -> Road:
     """Return the road that a person named: a file, else ``study`` or the number of a packed route.
 
     Args:
         name: as above.
-        start_road: id of the OpenDRIVE road to start with; default: the only possible one.
-        default_limit_mps: limit for OpenDRIVE roads that state none.
+        options: how its file is to be read.
 
     Raises:
         ModelError: as ``read_route``, or there is no packed route with this number.
     """
     route_id = None if Path(name).exists() else _packed_id(name)
     file = Path(name) if route_id is None else _packed_file(route_id)
-    route = read_route(file, start_road=start_road, default_limit_mps=default_limit_mps)
-    return Road(route, route_id, file, start_road is None and default_limit_mps is None)
+    return Road(read_route(file, options), route_id, file, options == AS_WRITTEN)
 
 
-def open_route(
-    name: str, *, start_road: str | None = None, default_limit_mps: float | None = None
+def open_route(  # noqa: PLR0913 - all by keyword, as a person says them
+    name: str,
+    *,
+    start_road: str | None = None,
+    via: Iterable[str] = (),
+    to: str | None = None,
+    reverse: bool = False,
+    default_limit_mps: float | None = None,
+    limit_unit: LimitUnit | None = None,
+    signs: bool = True,
+    smoothing_m: float | None = None,
 ) -> Route:
     """Return the route that a person named.
 
     Args:
         name: a file, ``study`` for the shipped road, or the number of a packed route.
-        start_road: as for ``open_road``.
-        default_limit_mps: as for ``open_road``.
+        start_road: id of the OpenDRIVE road to start with; None: the only possible one.
+        via: ids of the roads to pass, in this order.
+        to: id of the road that the way ends with.
+        reverse: the start road is driven against the direction in which it is drawn.
+        default_limit_mps: limit where the file states none and no neighbour does.
+        limit_unit: unit of limits that the file states without one.
+        signs: speed signs count where no speed is stated.
+        smoothing_m: wavelength below which noise of the curvature is smoothed away, in m.
 
     Raises:
         ModelError: as ``open_road``.
     """
-    return open_road(name, start_road=start_road, default_limit_mps=default_limit_mps).route
+    options = RoadOptions(
+        start_road, tuple(via), to, reverse, default_limit_mps, limit_unit, signs, smoothing_m
+    )
+    return open_road(name, options).route
 
 
 def packed_route(route_id: int) -> Route:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Final
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,14 @@ PLACE_MAX_M: Final = 1e8
 COLUMNS: Final = ("s_m", "curvature_per_m", "speed_limit_mps", "grade", "x_m", "y_m")
 
 
+class Mark(NamedTuple):
+    """A place on a route that has a name, for messages and pictures."""
+
+    s_m: float
+    kind: Literal["road", "sign"]  # a road of the file begins, a sign stands
+    name: str
+
+
 @dataclass(frozen=True, eq=False)
 class Route:
     """A road to drive along, given by knots; all arrays are float64 of one length.
@@ -43,6 +51,7 @@ class Route:
     y_m: FloatArray  # north
     has_line: bool = True
     notes: tuple[Finding, ...] = ()  # how its file was read
+    marks: tuple[Mark, ...] = ()  # in order of s_m
 
     def __post_init__(self) -> None:
         fault = first_fault(self.knots)

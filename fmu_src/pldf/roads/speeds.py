@@ -11,12 +11,19 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from typing import Final
 
+from ..findings import Finding
 from ..kernel.units import KMH_PER_MPS, MPS_PER_KMH
+from .contents import Contents
+from .options import RoadOptions
 from .xml_tree import Element, Place
 
 NO_LIMIT_MPS: Final = 130.0 / KMH_PER_MPS
 _UNITS: Final = {"m/s": 1.0, "km/h": MPS_PER_KMH, "mph": 0.44704}
 _WAY_OUT: Final = "add type/speed to the file or give a default limit (--default-limit KMH)"
+
+
+# Start in m over the road's own arc length and limit in m/s, in order of s from 0 on.
+Limits = list[tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -27,25 +34,26 @@ class Record:
     limit_mps: float | None
 
 
-def limits(
-    road: Element, place: Place, length_m: float, *, against: bool, default_mps: float | None
-) -> list[tuple[float, float]]:
-    """Return (start in m, limit in m/s) in order of s, from 0 on.
+def limits_along(roads: list[Contents], options: RoadOptions, notes: list[Finding]) -> list[Limits]:
+    """Return the limits of each road of a way, over the road's own arc length.
 
     Args:
-        road: the ``road`` element.
-        place: file and road for errors.
-        length_m: length of the road.
-        against: True when the road is driven against its direction (the lanes of that side count).
-        default_mps: limit where the file states none.
+        roads: in the order in which they are driven.
+        options: what counts where the file states no limit, or no unit.
+        notes: gets what is told about them.
 
     Raises:
         ModelError: where no limit is stated and there is no default; for unusable speeds.
     """
+    return [_limits(road, options.default_limit_mps) for road in roads]
+
+
+def _limits(contents: Contents, default_mps: float | None) -> Limits:
+    road, place, length_m = contents.leg.road, contents.place, contents.length_m
     types = _records(road, place, "type", "s")
-    lanes = _lane_sections(road, place, _side(road, against), length_m)
+    lanes = _lane_sections(road, place, _side(road, contents.leg.against), length_m)
     starts = {0.0} | {r.start_m for r in types} | {r.start_m for lane in lanes for r in lane}
-    steps: list[tuple[float, float]] = []
+    steps: Limits = []
     for start in sorted(s for s in starts if 0.0 <= s < length_m):
         stated = [at for at in (_in_force(lane, start) for lane in lanes) if at is not None]
         limit = min(stated) if stated else _in_force(types, start)

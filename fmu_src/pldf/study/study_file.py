@@ -8,13 +8,15 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Final
 
+from msgspec.structs import asdict
+
 from vehicle_models.vehicle_state import VehicleState
 
 from ..errors import ModelError
 from ..findings import Finding
 from ..kernel.signals import Signal, signals_of
 from ..kernel.state import PldfState
-from ..roads import Road, open_road
+from ..roads import Road, RoadOptions, open_road
 from ..settings import parameter_value
 from ..toml_file import Key, TomlFile, listed, shown
 from .participants import DRIVER_SIGNALS, Participant, StudySettings
@@ -181,8 +183,7 @@ def _road(file: TomlFile, tables: StudyTables) -> Road:
     try:
         return open_road(
             str(beside) if beside.is_file() else road.route,
-            start_road=road.start_road,
-            default_limit_mps=road.default_limit_mps,
+            RoadOptions(**{f: value for f, value in asdict(road).items() if f != "route"}),
         )
     except ModelError as problem:
         file.fail(("road", "route"), str(problem))

@@ -11,6 +11,7 @@ from msgspec import Meta, Struct
 from ..cosim.drive_limits import STEP_S
 from ..kernel.signals import Signal
 from ..kernel.units import KMH_PER_MPS
+from ..roads.options import LimitUnit
 from .phases import SEED_MAX
 
 COUNT_MAX: Final = 1_000_000
@@ -39,6 +40,7 @@ Limit = Annotated[
     float,
     Meta(gt=0.0, le=LIMIT_MAX_MPS, description=f"a number above 0 and up to {LIMIT_MAX_MPS:.4g}"),
 ]
+Smoothing = Annotated[float, Meta(ge=0.0, le=1000.0, description="a number from 0 to 1000")]
 Recorded = Annotated[
     list[str] | Literal["all"], Meta(description='"all" or a list of participants')
 ]
@@ -68,7 +70,13 @@ class RoadTable(Struct, forbid_unknown_fields=True, frozen=True):
 
     route: Text = "study"
     start_road: Text | None = None
+    via: tuple[Text, ...] = ()
+    to: Text | None = None
+    reverse: bool = False
     default_limit_mps: Limit | None = None
+    limit_unit: LimitUnit | None = None
+    signs: bool = True
+    smoothing_m: Smoothing | None = None
 
 
 class RecordingsTable(Struct, forbid_unknown_fields=True, frozen=True):

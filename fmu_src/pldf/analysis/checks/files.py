@@ -20,7 +20,7 @@ from ...recordings.contradictions import contradictions
 from ...recordings.mapping import RecordingMap, read_map, remembered_map
 from ...recordings.quality import quality_of
 from ...recordings.recording import Recording, read_recording
-from ...roads import read_route
+from ...roads import AS_WRITTEN, RoadOptions, read_route
 from ...route_facts import route_facts
 from ...study.participants_file import read_participants
 from ...study.study_file import read_study
@@ -44,14 +44,12 @@ class Known(NamedTuple):
     Attributes:
         route: the road driven, None if it is not known.
         map: what columns are called; None: a ``map.toml`` near the file, if there.
-        start_road: id of the OpenDRIVE road to start with.
-        default_limit_mps: where an OpenDRIVE road states none.
+        road: how the files of roads are to be read.
     """
 
     route: RouteArrays | None = None
     map: RecordingMap | None = None
-    start_road: str | None = None
-    default_limit_mps: float | None = None
+    road: RoadOptions = AS_WRITTEN
 
 
 def check_file(path: Path, known: Known) -> CheckedFile:
@@ -98,7 +96,7 @@ def _content(recording: Recording) -> str:
 
 
 def _road(path: Path, known: Known) -> list[Finding]:
-    route = read_route(path, start_road=known.start_road, default_limit_mps=known.default_limit_mps)
+    route = read_route(path, known.road)
     facts = route_facts(route)
     return [
         *route.notes,

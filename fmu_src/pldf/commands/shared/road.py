@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import argparse
 import math
+from typing import get_args
 
 from ...kernel.units import KMH_PER_MPS
-from ...roads import Road, open_road
+from ...roads import Road, RoadOptions, open_road
+from ...roads.options import LimitUnit
 from .telling import tell
 
 _LIMIT_MAX_KMH = 300.0
-
+_SMOOTHING_MAX_M = 1000.0
 
 Parser = argparse.ArgumentParser | argparse._ArgumentGroup
 
@@ -46,8 +48,30 @@ def add_road(
         "--start-road", metavar="ID", help="OpenDRIVE road that the route starts with"
     )
     parser.add_argument(
-        "--default-limit", metavar="KMH", type=_limit, help="limit where the road states none"
-    )
+        "--via", metavar="ID,ID", type=_ids, default=(),
+        help="roads that the way passes, in this order, such as 12,45,7",
+    )  # fmt: skip
+    parser.add_argument("--to", metavar="ID", help="road that the way ends with")
+    parser.add_argument(
+        "--reverse", action="store_true",
+        help="drive the start road against the direction in which it is drawn",
+    )  # fmt: skip
+    parser.add_argument(
+        "--default-limit", metavar="KMH", type=_limit,
+        help="limit where neither the road nor a neighbour states one",
+    )  # fmt: skip
+    parser.add_argument(
+        "--limit-unit", choices=get_args(LimitUnit),
+        help="unit of limits that the file states without one (default: m/s, as OpenDRIVE says)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--no-signs", dest="signs", action="store_false",
+        help="do not read speed signs where the road states no limit",
+    )  # fmt: skip
+    parser.add_argument(
+        "--smoothing", dest="smoothing_m", metavar="M", type=_metres,
+        help="smooth the curvature below this wavelength; 0: never (default: where it is noisy)",
+    )  # fmt: skip
 
 
 def chosen_road(options: argparse.Namespace) -> Road | None:
@@ -58,9 +82,7 @@ def chosen_road(options: argparse.Namespace) -> Road | None:
     """
     if options.road is None:
         return None
-    road = open_road(
-        options.road, start_road=options.start_road, default_limit_mps=default_limit_mps(options)
-    )
+    road = open_road(options.road, road_options(options))
     tell(road.route.notes)
     return road
 
@@ -72,9 +94,32 @@ def required_road(options: argparse.Namespace) -> Road:
     return road
 
 
-def default_limit_mps(options: argparse.Namespace) -> float | None:
-    """Return ``--default-limit`` in m/s."""
-    return None if options.default_limit is None else options.default_limit / KMH_PER_MPS
+def road_options(options: argparse.Namespace) -> RoadOptions:
+    """Return how the arguments want the file of a road to be read."""
+    return RoadOptions(
+        options.start_road,
+        options.via,
+        options.to,
+        options.reverse,
+        None if options.default_limit is None else options.default_limit / KMH_PER_MPS,
+        options.limit_unit,
+        options.signs,
+        options.smoothing_m,
+    )
+
+
+def _ids(text: str) -> tuple[str, ...]:
+    return tuple(filter(None, (name.strip() for name in text.split(","))))
+
+
+def _metres(text: str) -> float:
+    try:
+        length_m = float(text)
+    except ValueError:
+        length_m = math.nan
+    if not 0.0 <= length_m <= _SMOOTHING_MAX_M:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a length from 0 to 1000 m")
+    return length_m
 
 
 def _limit(text: str) -> float:
