@@ -28,7 +28,8 @@ def test_the_log_of_the_function(road: Path) -> None:
 
 
 def test_commands(road: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["route", str(road)]) == 0
+    nothing = ["--recording", str(tmp_path / "none.csv"), "--out", str(tmp_path / "out.pldf")]
+    assert main(["learn", "--route", str(road), *nothing]) == 1
     assert "note: " in capsys.readouterr().err
     script = tmp_path / "script.csv"
     script.write_text("at;unit;control;value;duration_s\n1,5;s;gas;0,25;1\n")

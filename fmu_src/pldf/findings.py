@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from collections.abc import Iterable
+from typing import Final, Literal, NamedTuple, get_args
 
 # error: it cannot be used; warning: it can, but a number may not mean what one takes it for;
 # note: how it was read, or what was repaired.
 Severity = Literal["error", "warning", "note"]
+SEVERITIES: Final[tuple[Severity, ...]] = get_args(Severity)
 
 
 class Finding(NamedTuple):
@@ -41,3 +43,11 @@ class Finding(NamedTuple):
         return f"{self.where}: " + "; ".join(
             filter(None, (self.text, self.consequence, self.way_out))
         )
+
+
+def in_order(findings: Iterable[Finding]) -> list[Finding]:
+    """Return each finding once, errors first, then by file and line."""
+    return sorted(
+        dict.fromkeys(findings),
+        key=lambda one: (SEVERITIES.index(one.severity), one.file, one.line),
+    )

@@ -66,7 +66,7 @@ def test_an_exported_route_is_the_same_route(run: Run) -> None:
 def test_a_route_is_prepared_for_native_fmus(run: Run) -> None:
     status, out, err = run("study", "--export", "out.prepared")
     assert (status, err) == (0, "")
-    assert out.endswith("written      out.prepared\n")
+    assert out.endswith("written      out.prepared\nnothing to tell\n")
     assert Path("out.prepared").read_bytes() == prepared_route(packed_route(0))
     assert [path.name for path in Path().iterdir()] == ["out.prepared"]
 
@@ -76,7 +76,7 @@ def test_the_plot_is_a_picture_with_something_on_it(run: Run, source: str) -> No
     Path("flat.csv").write_text("s_m,curvature_per_m,speed_limit_mps\n0,0,20\n900,0,20\n")
     status, out, _ = run(source, "--plot", "road.png")
     assert status == 0
-    assert out.endswith("drawn        road.png\n")
+    assert out.endswith("drawn        road.png\nnothing to tell\n")
     picture = matplotlib.image.imread("road.png")
     assert min(picture.shape[:2]) >= 600
     blue = np.array([0x00, 0x72, 0xB2]) / 255.0  # the base profile's colour
@@ -160,6 +160,17 @@ def test_long_routes_are_summed_up(run: Run) -> None:
     assert status == 0
     assert "and 76 more" in out
     assert len(out.splitlines()) < 15
+
+
+def test_what_is_told_of_a_road_is_one_list_at_the_end(run: Run) -> None:
+    Path("road.csv").write_text("s_m;curvature_per_m;speed_limit_mps\n0;0,0;20\n900;0;20,5\n")
+    status, out, err = run("road.csv", "--export", "again.csv")
+    assert (status, err) == (0, "")
+    lines = out.splitlines()
+    assert lines[-4] == "written      again.csv"
+    assert lines[-3].startswith("note         road.csv: ")
+    assert lines[-2].startswith("note         road.csv: ")
+    assert lines[-1] == "2 notes"
 
 
 def test_minutes_are_rounded_as_a_whole() -> None:

@@ -16,13 +16,12 @@ from rich.table import Table
 from rich.text import Text
 
 from ..analysis.checks import CheckedFile, Checks, check_file, check_folder, is_study
-from ..analysis.checks.checked import SEVERITIES
 from ..analysis.checks.files import Known
 from ..analysis.checks.folder import with_copies, with_own_road
 from ..analysis.checks.kinds import KNOWN_SUFFIXES
 from ..analysis.study_folder import StudyFolder
 from ..errors import ModelError
-from ..findings import Finding
+from ..findings import SEVERITIES, Finding
 from ..recordings.mapping import RecordingMap
 from ..recordings.quality import Quality
 from ..recordings.suggest import suggest_map

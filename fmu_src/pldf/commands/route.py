@@ -12,9 +12,10 @@ from ..cosim.prepared import SUFFIX, write_prepared_route
 from ..durations import minutes
 from ..errors import ModelError
 from ..kernel.units import KMH_PER_MPS
-from ..roads import fingerprint, write_route_csv
+from ..roads import fingerprint, open_road, write_route_csv
 from ..route_facts import BINDING_MPS, RouteFacts, route_facts
-from .shared.road import add_road, required_road
+from .shared.road import add_road, road_options
+from .shared.telling import listed
 
 EXAMPLE: Final = "pldf route study --plot study.png"
 
@@ -37,8 +38,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> None:
-    """Print the summary; draw and export if asked to."""
-    route = required_road(options).route
+    """Print the summary; draw and export if asked to; tell what was found at the end."""
+    route = open_road(options.road, road_options(options)).route
     facts = route_facts(route)
     print("\n".join(_summary(facts)))
     if options.export is not None:
@@ -52,6 +53,7 @@ def run(options: argparse.Namespace) -> None:
             raise ModelError(f"{options.plot}: there is no folder {options.plot.parent}")
         paper.save(figures.route(facts), options.plot)
         print(f"drawn        {options.plot}")
+    print("\n".join(listed(route.notes)))
 
 
 def _summary(facts: RouteFacts) -> Iterator[str]:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from ...findings import Finding, Severity
+from ...findings import SEVERITIES, Finding, Severity, in_order
 from ...recordings.quality import Quality
 from ..problems import brought_together
-
-SEVERITIES: Final[tuple[Severity, ...]] = ("error", "warning", "note")
 
 
 @dataclass(frozen=True)
@@ -73,11 +70,3 @@ class Checks:
 
 
 UNCHECKED: Final = Checks()
-
-
-def in_order(findings: Iterable[Finding]) -> list[Finding]:
-    """Return each finding once, errors first, then by file and line."""
-    return sorted(
-        dict.fromkeys(findings),
-        key=lambda one: (SEVERITIES.index(one.severity), one.file, one.line),
-    )
