@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from ..errors import ModelError
-from .chain import Leg
 from .geometry import Cubic, Geometry, LinearCurvature, Pose, param_poly3, poly3
+from .leg import Leg
 from .route import LENGTH_MAX_M
 from .xml_tree import Element, Place
 

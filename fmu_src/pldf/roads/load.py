@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Final
 from ..errors import ModelError
 from .csv_file import parse_route_csv
 from .opendrive import parse_opendrive
-from .options import AS_WRITTEN, LimitUnit, RoadOptions
+from .options import AS_WRITTEN, LimitUnit, OptionNeededError, RoadOptions, arguments
 from .route import Route
 
 DATA: Final = Path(__file__).parent / "data"
@@ -135,4 +136,11 @@ def chosen_route(route_id: int, route_file: str) -> Route:
     Raises:
         ModelError: as ``read_route`` and ``packed_route``.
     """
-    return read_route(route_file) if route_file else packed_route(route_id)
+    if not route_file:
+        return packed_route(route_id)
+    try:
+        return read_route(route_file)
+    except OptionNeededError as error:  # a model has no such options: its route_file must say all
+        command = f"pldf route {shlex.quote(route_file)} {arguments(error.suggested)}"
+        told = f"{error.matter}: {command} --export my.csv{error.more}; then take my.csv"
+        raise ModelError(told) from None

@@ -7,13 +7,15 @@ from pathlib import Path
 
 from ..errors import ModelError
 from ..findings import Finding
-from .chain import Leg, Network
 from .contents import read_contents
 from .joining import joined
+from .leg import Leg
+from .network import Network
 from .options import RoadOptions
 from .route import Mark, Route
 from .sampling import sample
 from .speeds import limits_along
+from .ways import find_way
 from .xml_tree import Place, parse_xml
 
 
@@ -25,7 +27,7 @@ def parse_opendrive(data: bytes, path: Path, options: RoadOptions) -> Route:
     """
     notes: list[Finding] = []
     root = parse_xml(data, "OpenDRIVE", path, notes)
-    legs = Network(root, Place(path)).way(options, notes)
+    legs = find_way(Network(root, Place(path)), options, notes)
     roads = [read_contents(leg, Place(path, leg.id)) for leg in legs]
     limits = limits_along(roads, options, notes)
     starts_m = [0.0, *accumulate(road.length_m for road in roads)]

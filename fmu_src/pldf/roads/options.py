@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass
 from typing import Literal
+
+from ..errors import ModelError
+from ..kernel.units import KMH_PER_MPS
 
 LimitUnit = Literal["km/h", "mph", "m/s"]
 
@@ -35,3 +39,37 @@ class RoadOptions:
 
 
 AS_WRITTEN = RoadOptions()
+
+
+class OptionNeededError(ModelError):
+    """A file that can only be read when a person says more about it.
+
+    What has to be said is kept apart from what is the matter: each place where roads are named has
+    its own way to say it.
+    """
+
+    def __init__(self, matter: str, suggested: RoadOptions, more: str = "") -> None:
+        """Keep what is the matter, the options that would do, and what else to say about them."""
+        self.matter, self.suggested, self.more = matter, suggested, more
+        super().__init__(f"{matter}: {arguments(suggested)}{more}")
+
+
+def arguments(options: RoadOptions) -> str:
+    """Return the options as they are typed behind a command."""
+    words = {
+        "--start-road": options.start_road,
+        "--via": ",".join(options.via) or None,
+        "--to": options.to,
+    }
+    typed = [f"{name} {shlex.quote(word)}" for name, word in words.items() if word is not None]
+    if options.reverse:
+        typed.append("--reverse")
+    if options.default_limit_mps is not None:
+        typed.append(f"--default-limit {options.default_limit_mps * KMH_PER_MPS:g}")
+    if options.limit_unit is not None:
+        typed.append(f"--limit-unit {options.limit_unit}")
+    if not options.signs:
+        typed.append("--no-signs")
+    if options.smoothing_m is not None:
+        typed.append(f"--smoothing {options.smoothing_m:g}")
+    return " ".join(typed)

@@ -1,0 +1,293 @@
+"""The roads of an OpenDRIVE file and what leads on from each of them.
+
+Decisions:
+
+- A way out of the front of a road through a junction is a connecting road that really begins there:
+  its own link at the end where they meet names the road, and its end where given. What the
+  connecting road says of itself counts more than the junction's ``contactPoint``; where it says
+  nothing, the lines decide. It must have a lane for cars in this direction.
+- Links to what is not in the file end the way: excerpts of larger maps are full of them.
+- A link into the middle of a road (``elementS``, of virtual junctions) ends it too.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final
+
+from ..findings import Finding
+from .ends import Ends
+from .leg import Leg, lane_counts
+from .xml_tree import Element, Place
+
+_LINK: Final = {"start": "predecessor", "end": "successor"}
+_OTHER: Final = {"start": "end", "end": "start"}
+_ENDS: Final = ("start", "end")
+
+
+@dataclass(frozen=True)
+class Step:
+    """A leg that another leads to, and what is told when it is taken."""
+
+    leg: Leg
+    told: tuple[Finding, ...] = ()
+
+
+@dataclass(frozen=True)
+class Onward:
+    """What a leg leads to.
+
+    Attributes:
+        steps: one for each leg that can be driven next.
+        told: why there is none, where that is worth telling.
+        link: the element that leads there; None: the road has no link at its front.
+        junction: id of the junction; empty: a road, or nothing.
+    """
+
+    steps: tuple[Step, ...] = ()
+    told: tuple[Finding, ...] = ()
+    link: Element | None = None
+    junction: str = ""
+
+
+class Network:
+    """The roads and junctions of one file."""
+
+    def __init__(self, root: Element, place: Place) -> None:
+        self.place = place
+        self.roads = _by_id(root.all("road"), place)
+        self.junctions = _by_id(root.all("junction"), place)
+        self.ends = Ends(place)
+        self._onward: dict[Leg, Onward] = {}
+        self._lanes: dict[str, tuple[int, int] | None] = {}
+        self._connections: dict[str, dict[str, list[Element]]] = {}
+        if not self.roads:
+            raise place.error(root, "no <road> in this file")
+
+    def leg(self, road: str, *, against: bool) -> Leg:
+        """Return the road with this id, in this direction."""
+        return Leg(self.roads[road], against)
+
+    def lanes(self, road: Element) -> tuple[int, int] | None:
+        """Return the lanes for cars along the road and against it; None: the file has none."""
+        name = road.attributes.get("id", "")
+        if name not in self._lanes:
+            self._lanes[name] = lane_counts(road)
+        return self._lanes[name]
+
+    def has_lane(self, leg: Leg) -> bool | None:
+        """Tell whether cars drive in this direction; None: the file does not say."""
+        counts = self.lanes(leg.road)
+        return None if counts is None else counts[leg.against] > 0
+
+    def onward(self, leg: Leg) -> Onward:
+        """Return what the leg leads to."""
+        if leg not in self._onward:
+            self._onward[leg] = self._read_onward(leg)
+        return self._onward[leg]
+
+    def nothing_behind(self, leg: Leg) -> bool:
+        """Tell whether no road and no junction of the file is linked to the rear of the leg."""
+        link = _link(leg.road, leg.rear)
+        if link is None:
+            return True
+        name = link.attributes.get("elementId", "")
+        return name not in (self.junctions if self._to_junction(link) else self.roads)
+
+    def _read_onward(self, leg: Leg) -> Onward:
+        link = _link(leg.road, leg.front)
+        if link is None:
+            return Onward()
+        if self._to_junction(link):
+            return self._through_junction(leg, link)
+        name = link.attributes.get("elementId", "")
+        if name not in self.roads:
+            return self._nowhere(leg, link, f"<{link.tag}> road {name!r} is not in the file")
+        if "elementS" in link.attributes:
+            text = f"leads into the middle of road {name}, at {link.attributes['elementS']} m"
+            return self._nowhere(leg, link, text)
+        return Onward((self._linked(leg, link, self.roads[name]),), link=link)
+
+    def _to_junction(self, link: Element) -> bool:
+        name = link.attributes.get("elementId", "")
+        usual = "junction" if name in self.junctions and name not in self.roads else "road"
+        return link.attributes.get("elementType", usual) == "junction"
+
+    def _nowhere(self, leg: Leg, link: Element, text: str) -> Onward:
+        told = self._told("note", leg, link, text, "the way ends here")
+        return Onward(told=(told,), link=link)
+
+    def _told(self, severity: str, leg: Leg, at: Element, text: str, then: str) -> Finding:
+        assert severity in ("note", "warning")
+        place = f"road {leg.id}"
+        return Finding(severity, str(self.place.path), at.line, place, text, then)  # type: ignore[arg-type]
+
+    # A link from road to road.
+
+    def _linked(self, leg: Leg, link: Element, road: Element) -> Step:
+        stated = link.attributes.get("contactPoint", "").strip().lower()
+        entered = Leg(road, against=False)
+        own = [end for end in _ENDS if self._names(entered, end, leg)]
+        if stated in _ENDS and (stated in own or not own):
+            return Step(Leg(road, against=stated == "end"))
+        end = self._nearest(entered, own if len(own) == 1 and stated not in _ENDS else _ENDS, leg)
+        if stated in _ENDS:
+            text = f"<{link.tag}> names the {stated} of road {entered.id}, which is linked to here "
+            text += f"by its {own[0]}"
+        else:
+            text = f"<{link.tag}> does not say at which end road {entered.id} is met (contactPoint)"
+        told = self._told(
+            "note" if stated not in _ENDS else "warning",
+            leg, link, text, f"driven from its {end} on, where the lines meet",
+        )  # fmt: skip
+        return Step(Leg(road, against=end == "end"), (told,))
+
+    def _names(self, entered: Leg, end: str, leg: Leg) -> bool:
+        """Tell whether the link of a road at this end is to the front of ``leg``."""
+        link = _link(entered.road, end)
+        return (
+            link is not None
+            and not self._to_junction(link)
+            and link.attributes.get("elementId") == leg.id
+            and link.attributes.get("contactPoint", leg.front).strip().lower() == leg.front
+        )
+
+    def _nearest(self, entered: Leg, ends: Iterable[str], leg: Leg) -> str:
+        return min(ends, key=lambda end: self.ends.distance_m(entered, end, leg, leg.front))
+
+    # Through a junction.
+
+    def _through_junction(self, leg: Leg, link: Element) -> Onward:
+        name = link.attributes.get("elementId", "")
+        if name not in self.junctions:
+            return self._nowhere(leg, link, f"junction {name!r} is not in the file")
+        steps: dict[Leg, Step] = {}
+        for connection in self._connections_of(name).get(leg.id, []):
+            step = self._connected(leg, connection, name)
+            if step is not None:
+                steps.setdefault(step.leg, step)
+        if steps:
+            return Onward(tuple(steps.values()), (), link, name)
+        text = f"junction {name} has no connection that leaves from here"
+        told = self._told("note", leg, link, text, "the way ends here")
+        return Onward((), (told,), link, name)
+
+    def _connections_of(self, junction: str) -> dict[str, list[Element]]:
+        """Return the connections of a junction by the road that they can be entered from."""
+        if junction not in self._connections:
+            by_road: dict[str, list[Element]] = defaultdict(list)
+            for each in self.junctions[junction].all("connection"):
+                by_road[each.attributes.get("incomingRoad", "")].append(each)
+                linked = each.attributes.get("linkedRoad")
+                if linked is not None:  # direct: there is no road between, and both lead on
+                    by_road[linked].append(each)
+            self._connections[junction] = by_road
+        return self._connections[junction]
+
+    def _connected(self, leg: Leg, connection: Element, junction: str) -> Step | None:
+        linked = connection.attributes.get("linkedRoad")
+        if linked is not None:
+            return self._directly(leg, connection, linked, junction)
+        name = connection.attributes.get("connectingRoad", "")
+        if name not in self.roads:
+            return None
+        entered = Leg(self.roads[name], against=False)
+        stated = connection.attributes.get("contactPoint", "").strip().lower()
+        end, doubt = self._contact(leg, entered, stated, junction)
+        if end is None:
+            return None
+        way = Leg(entered.road, against=end == "end")
+        has_lane = self.has_lane(way)
+        if has_lane is False or (doubt and has_lane is None):
+            return None
+        if not doubt:
+            return Step(way)
+        told = self._told("warning", leg, connection, doubt, f"driven from its {end} on")
+        return Step(way, (told,))
+
+    def _contact(
+        self, leg: Leg, entered: Leg, stated: str, junction: str
+    ) -> tuple[str | None, str]:
+        """Return the end of a connecting road that lies at the front of ``leg``, and doubts."""
+        own = [end for end in _ENDS if self._begins_at(leg, entered, end, junction)]
+        if stated in own:
+            return stated, ""
+        if own:
+            if stated not in _ENDS:
+                return self._nearest(entered, own, leg), ""
+            text = f"junction {junction} says that road {entered.id} is met at its {stated}, "
+            return own[0], text + f"the road's own link that it is met at its {own[0]}"
+        silent = [end for end in _ENDS if self._says_nothing(entered, end)]
+        if stated in _ENDS:
+            silent = [end for end in silent if end == stated]
+        near = [end for end in silent if self._lies_at_front(leg, entered, end)]
+        return (self._nearest(entered, near, leg) if near else None), ""
+
+    def _begins_at(self, leg: Leg, entered: Leg, end: str, junction: str) -> bool:
+        link = _link(entered.road, end)
+        if link is None or self._to_junction(link) or link.attributes.get("elementId") != leg.id:
+            return False
+        stated = link.attributes.get("contactPoint", "").strip().lower()
+        if stated == leg.front:
+            return True
+        rear = _link(leg.road, leg.rear)
+        both = (
+            rear is not None
+            and self._to_junction(rear)
+            and rear.attributes.get("elementId") == junction
+        )
+        if stated == leg.rear and both:
+            return False
+        # The end is not stated, or it is one that is not at this junction.
+        return not (both or stated) or self._lies_at_front(leg, entered, end)
+
+    def _says_nothing(self, entered: Leg, end: str) -> bool:
+        link = _link(entered.road, end)
+        return link is None or self._to_junction(link)
+
+    def _lies_at_front(self, leg: Leg, entered: Leg, end: str) -> bool:
+        front, rear = (
+            self.ends.distance_m(entered, end, leg, each) for each in (leg.front, leg.rear)
+        )
+        return front <= rear
+
+    def _directly(self, leg: Leg, connection: Element, linked: str, junction: str) -> Step | None:
+        """Return the step through a direct junction, whose roads touch each other."""
+        forth = connection.attributes.get("incomingRoad") == leg.id
+        name = linked if forth else connection.attributes.get("incomingRoad", "")
+        stated = connection.attributes.get("contactPoint", "").strip().lower()
+        if name not in self.roads or (not forth and stated in _ENDS and stated != leg.front):
+            return None
+        entered = Leg(self.roads[name], against=False)
+        ends = [end for end in _ENDS if self._is_at(entered, end, junction)]
+        if forth and stated in _ENDS:
+            ends = [stated]
+        if not ends:
+            return None
+        way = Leg(entered.road, against=self._nearest(entered, ends, leg) == "end")
+        return None if self.has_lane(way) is False else Step(way)
+
+    def _is_at(self, leg: Leg, end: str, junction: str) -> bool:
+        link = _link(leg.road, end)
+        return (
+            link is not None
+            and self._to_junction(link)
+            and link.attributes.get("elementId") == junction
+        )
+
+
+def _by_id(elements: Iterable[Element], place: Place) -> dict[str, Element]:
+    by_id: dict[str, Element] = {}
+    for element in elements:
+        name = element.attributes.get("id", "")
+        if name in by_id:
+            text = f"id {name!r} is that of line {by_id[name].line} too; ids must differ"
+            raise place.error(element, f"<{element.tag}> {text}")
+        by_id[name] = element
+    return by_id
+
+
+def _link(road: Element, end: str) -> Element | None:
+    return next(road.all("link", _LINK[end]), None)
