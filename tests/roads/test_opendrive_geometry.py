@@ -32,7 +32,11 @@ def test_the_line_turns_as_the_curvature_says(read: Reader, shape: str) -> None:
 def test_driven_backwards_everything_is_mirrored(read: Reader, shape: str) -> None:
     plan = geometry(0, 80, SHAPES[shape], 'x="50" y="-3" hdg="2.5"')
     curve = read(road("1", plan, length=80))
-    end = f'x="{curve.x_m[-1] - 30.0}" y="{curve.y_m[-1]}" hdg="0"'
+    towards = np.arctan2(*(np.diff(v[-2:])[0] for v in (curve.y_m, curve.x_m)))
+    towards += 0.5 * curve.curvature_per_m[-1] * np.diff(curve.s_m[-2:])[0] + np.pi
+    start = np.array([curve.x_m[-1], curve.y_m[-1]])
+    start -= 30.0 * np.array([np.cos(towards), np.sin(towards)])
+    end = f'x="{start[0]}" y="{start[1]}" hdg="{towards}"'
     first = road("0", geometry(0, 30, pose=end), length=30, link=link("successor", "1", "end"))
     second = road("1", plan, length=80, link=link("successor", "0", "end"))
     arrays, mirror = route_arrays(read(first, second)), route_arrays(curve)

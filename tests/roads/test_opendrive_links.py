@@ -76,10 +76,12 @@ def test_contact_point_may_be_missing(read: Reader) -> None:
 
 
 def test_a_loop_ends_where_it_began(read: Reader) -> None:
-    turned = geometry(0, 100, pose='x="100" y="0" hdg="3.14159265"')
+    half = f'<arc curvature="{np.pi / 100.0}"/>'
+    out = geometry(0, 100, half)
+    home = geometry(0, 100, half, f'x="0" y="{200.0 / np.pi}" hdg="{np.pi}"')
     both = link("predecessor", "b", "end") + link("successor", "b", "start")
     back = link("predecessor", "a", "end") + link("successor", "a", "start")
-    assert read(straight("a", link=both), road("b", turned, link=back)).length_m == 200.0
+    assert read(road("a", out, link=both), road("b", home, link=back)).length_m == 200.0
 
 
 def test_the_start_must_be_clear(read: Reader) -> None:
@@ -137,7 +139,9 @@ def test_a_link_to_nowhere_ends_the_way(read: Reader, kind: str) -> None:
 
 
 def test_linked_roads_must_meet(read: Reader) -> None:
-    with pytest.raises(ModelError, match="road b: the line jumps by 400 m at 100 m of the route"):
+    with pytest.raises(
+        ModelError, match="road b: it begins 400 m along and 0 m beside the end of road a"
+    ):
         read(
             straight("a", link=link("successor", "b", "start")),
             straight("b", 500.0, link=link("predecessor", "a", "end")),

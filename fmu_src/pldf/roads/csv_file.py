@@ -13,8 +13,13 @@ from typing import Final
 
 import numpy as np
 
-from ..files.tables import Column, Fault, Format, parse_table, write_table
+from ..files.tables import Column, Fault, Format, Table, parse_table, write_table
+from ..findings import Finding
+from ..kernel.arrays import FloatArray
+from .curves import judged
+from .kinks import CAR_LENGTH_M
 from .route import COLUMNS, Route, fingerprint, first_fault
+from .sampling import NO_JOINTS
 
 # What a knot may hold beyond being numbers is the route's affair: ``first_fault``.
 ROUTE: Final = Format(
@@ -33,26 +38,38 @@ ROUTE: Final = Format(
 )
 
 
-def parse_route_csv(data: bytes, path: Path) -> Route:
+def parse_route_csv(data: bytes, path: Path, smoothing_m: float | None) -> Route:
     """Return the route in ``data``, the content of ``path``.
+
+    ``smoothing_m`` is that of ``RoadOptions``; nothing else of them concerns a table.
 
     Raises:
         ModelError: with file, line, column, value and way out.
     """
     table = parse_table(data, path, ROUTE)
+
+    def locate(at_m: float) -> tuple[int, str]:
+        row = max(int(np.searchsorted(table.numbers["s_m"], at_m, side="right")) - 1, 0)
+        return table.lines[row], f"{at_m:.6g} m"
+
     if ("x_m" in table) != ("y_m" in table):
         absent = "y_m" if "x_m" in table else "x_m"
         text = f"missing column {absent}; a line needs both x_m and y_m"
         table.refuse([Fault(table.header_line, "", text)])
     knots = {name: np.zeros(len(table)) for name in COLUMNS} | table.numbers
-    fault = first_fault(knots)
+    _refuse(table, first_fault(knots, sharp=False))
+    stacked = np.stack([knots[name] for name in COLUMNS])
+    told: list[Finding] = []
+    if smoothing_m is not None or not _written_by_us(table, knots):
+        stacked, told = judged(stacked, NO_JOINTS, smoothing_m, str(path), locate)
+    fault = first_fault(dict(zip(COLUMNS, stacked, strict=True)))
     if fault is not None:
-        row, text = fault
-        table.refuse([table.fault(row, "", text)])
-    s_m, curvature, limit, grade, x_m, y_m = (knots[name] for name in COLUMNS)
+        line, _ = locate(float(stacked[0, fault[0]]))
+        table.refuse([Fault(line, "", fault[1])])
+    s_m, curvature, limit, grade, x_m, y_m = stacked
     return Route(
         path.stem, s_m, curvature, limit, grade, x_m, y_m,
-        has_line="x_m" in table, notes=tuple(table.notes),
+        has_line="x_m" in table, notes=(*table.notes, *told),
     )  # fmt: skip
 
 
@@ -63,5 +80,24 @@ def write_route_csv(route: Route, path: Path | str) -> None:
         ModelError: it cannot be written.
     """
     columns = COLUMNS if route.has_line else COLUMNS[:4]
-    head = f"route {route.name}, fingerprint {fingerprint(route)}"
+    head = f"route {route.name}, {_judged_mark(route)}"
     write_table(path, {name: route.knots[name] for name in columns}, [head])
+
+
+def _judged_mark(route: Route) -> str:
+    """Return what a file says whose curves are already those that a car drives."""
+    return f"fingerprint {fingerprint(route)}, curves judged over {CAR_LENGTH_M:g} m"
+
+
+def _refuse(table: Table, fault: tuple[int, str] | None) -> None:
+    if fault is not None:
+        table.refuse([table.fault(fault[0], "", fault[1])])
+
+
+def _written_by_us(table: Table, knots: dict[str, FloatArray]) -> bool:
+    """Tell whether this is a route that was exported, and nobody has changed it since."""
+    said = [comment for comment in table.comments if "curves judged" in comment]
+    if not said or first_fault(knots) is not None:
+        return False
+    s_m, curvature, limit, grade, x_m, y_m = (knots[name] for name in COLUMNS)
+    return said[0].endswith(_judged_mark(Route("", s_m, curvature, limit, grade, x_m, y_m)))

@@ -39,7 +39,7 @@ def read_route(path: Path | str, options: RoadOptions = AS_WRITTEN) -> Route:
         raise ModelError(f"{path}: the file is empty")
     if b"<OpenDRIVE" in data or path.suffix.lower() in (".xodr", ".xml"):
         return parse_opendrive(data, path, options)
-    return parse_route_csv(data, path)
+    return parse_route_csv(data, path, options.smoothing_m)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from itertools import accumulate
 from pathlib import Path
 
+import numpy as np
+
 from ..errors import ModelError
 from ..findings import Finding
+from ..kernel.arrays import FloatArray
+from .bending import S
 from .contents import read_contents
+from .curves import Locate, judged
 from .joining import joined
 from .leg import Leg
 from .network import Network
 from .options import RoadOptions
-from .route import Mark, Route
-from .sampling import sample
+from .route import COLUMNS, Mark, Route, first_fault
+from .sampling import Stretch, sample
 from .speeds import limits_along
 from .ways import find_way
 from .xml_tree import Place, parse_xml
@@ -32,17 +38,50 @@ def parse_opendrive(data: bytes, path: Path, options: RoadOptions) -> Route:
     limits = limits_along(roads, options, notes)
     starts_m = [0.0, *accumulate(road.length_m for road in roads)]
     stretches = [sample(*each) for each in zip(roads, limits, starts_m, strict=False)]
-    (s_m, curvature, limit, grade, x_m, y_m), _ = joined(stretches)
+    knots, joints = joined(stretches, notes)
+    locate = _locator(stretches, starts_m)
+    _check(knots, path, locate, sharp=False)
+    knots, told = judged(knots, joints, options.smoothing_m, str(path), locate)
+    _check(knots, path, locate)
+    s_m, curvature, limit, grade, x_m, y_m = knots
     header = root.find("header")
     name = header.attributes.get("name", "").strip() if header is not None else ""
     marks = tuple(Mark(s, "road", _named(leg)) for s, leg in zip(starts_m, legs, strict=False))
-    try:
-        return Route(
-            name or path.stem, s_m, curvature, limit, grade, x_m, y_m,
-            notes=tuple(notes), marks=marks,
-        )  # fmt: skip
-    except ModelError as error:
-        raise ModelError(f"{path}: {error}") from None
+    return Route(
+        name or path.stem,
+        s_m,
+        curvature,
+        limit,
+        grade,
+        x_m,
+        y_m,
+        notes=(*notes, *told),
+        marks=marks,
+    )
+
+
+def _check(knots: FloatArray, path: Path, locate: Locate, *, sharp: bool = True) -> None:
+    """Raise ModelError, with its place in the file, for the first knot that is of no use."""
+    fault = first_fault(dict(zip(COLUMNS, knots, strict=True)), sharp=sharp)
+    if fault is not None:
+        index, text = fault
+        line, place = locate(float(knots[S, index]))
+        raise ModelError(f"{path}, line {line}, {place}: {text}")
+
+
+def _locator(stretches: list[Stretch], starts_m: list[float]) -> Locate:
+    """Return what says where in the file a place on the route is."""
+
+    def locate(at_m: float) -> tuple[int, str]:
+        k = min(max(bisect_right(starts_m, at_m) - 1, 0), len(stretches) - 1)
+        stretch, ds = stretches[k], at_m - starts_m[k]
+        leg = stretch.contents.leg
+        behind = int(np.searchsorted(stretch.joints.s_m, at_m, side="right"))
+        line = int(stretch.joints.line[behind - 1]) if behind else leg.road.line
+        s_m = stretch.contents.length_m - ds if leg.against else ds
+        return line, f"road {leg.id}, s = {s_m:.6g} m ({at_m:.6g} m of the route)"
+
+    return locate
 
 
 def _named(leg: Leg) -> str:

@@ -74,16 +74,18 @@ class Route:
         return {name: getattr(self, name) for name in COLUMNS}
 
 
-def first_fault(knots: dict[str, FloatArray]) -> tuple[int, str] | None:
+def first_fault(knots: dict[str, FloatArray], *, sharp: bool = True) -> tuple[int, str] | None:
     """Return the index of the first unusable knot and what is wrong with it, None if all are good.
 
-    ``knots`` maps the names in ``COLUMNS`` to arrays of equal length.
+    Args:
+        knots: maps the names in ``COLUMNS`` to arrays of equal length.
+        sharp: that a curve is too tight for any car is a fault.
     """
     s_m = knots["s_m"]
     if len(s_m) == 0:
         return 0, "there are no knots: a route needs at least two"
     not_finite = [_first(~np.isfinite(values), _not_finite(name)) for name, values in knots.items()]
-    faults = [fault for fault in not_finite if fault is not None] or _numeric_faults(knots)
+    faults = [fault for fault in not_finite if fault is not None] or _numeric_faults(knots, sharp)
     if faults:
         index, text = min(faults, key=lambda fault: fault[0])
         return index, text.format(**{name: float(values[index]) for name, values in knots.items()})
@@ -92,7 +94,7 @@ def first_fault(knots: dict[str, FloatArray]) -> tuple[int, str] | None:
     return None
 
 
-def _numeric_faults(knots: dict[str, FloatArray]) -> list[tuple[int, str]]:
+def _numeric_faults(knots: dict[str, FloatArray], sharp: bool) -> list[tuple[int, str]]:
     s_m, limit = knots["s_m"], knots["speed_limit_mps"]
     late = np.zeros(len(s_m), dtype=bool)
     late[0] = s_m[0] != 0.0
@@ -111,7 +113,7 @@ def _numeric_faults(knots: dict[str, FloatArray]) -> list[tuple[int, str]]:
             "speed_limit_mps = {speed_limit_mps:g} m/s is above 300 km/h; is the unit right?",
         ),
         _first(
-            np.abs(knots["curvature_per_m"]) > CURVATURE_MAX_PER_M,
+            (np.abs(knots["curvature_per_m"]) > CURVATURE_MAX_PER_M) & sharp,
             "curvature_per_m = {curvature_per_m:g}: a curve tighter than 1 m; correct the line",
         ),
         *(
@@ -147,10 +149,10 @@ def route_arrays(route: Route) -> RouteArrays:
     s_m = route.s_m
     return RouteArrays(
         limit_mps=_repeat_last(_lowest_limit(s_m, route.speed_limit_mps, nodes)),
-        curvature_per_m=_repeat_last(_sharpest_curve(s_m, route.curvature_per_m, nodes)),
-        grade=_right_values(s_m, route.grade, nodes),
-        x_m=_right_values(s_m, route.x_m, nodes),
-        y_m=_right_values(s_m, route.y_m, nodes),
+        curvature_per_m=_repeat_last(sharpest_curve(s_m, route.curvature_per_m, nodes)),
+        grade=right_values(s_m, route.grade, nodes),
+        x_m=right_values(s_m, route.x_m, nodes),
+        y_m=right_values(s_m, route.y_m, nodes),
     )
 
 
@@ -183,24 +185,25 @@ def _lowest_limit(s_m: FloatArray, limit: FloatArray, nodes: FloatArray) -> Floa
     return lowest
 
 
-def _sharpest_curve(s_m: FloatArray, curvature: FloatArray, nodes: FloatArray) -> FloatArray:
+def sharpest_curve(s_m: FloatArray, curvature: FloatArray, nodes: FloatArray) -> FloatArray:
+    """Return the largest absolute curvature in each cell between the nodes 0, 1, 2, ..."""
     # |curvature| is convex between knots: its maximum lies at a knot or at an end of the cell.
     sharpest = np.maximum(
-        np.abs(_right_values(s_m, curvature, nodes)[:-1]),
-        np.abs(_left_values(s_m, curvature, nodes[1:])),
+        np.abs(right_values(s_m, curvature, nodes)[:-1]),
+        np.abs(left_values(s_m, curvature, nodes[1:])),
     )
     at = np.flatnonzero((np.floor(s_m) < s_m) & (s_m < nodes[-1]))
     np.maximum.at(sharpest, s_m[at].astype(np.intp), np.abs(curvature[at]))
     return sharpest
 
 
-def _right_values(s_m: FloatArray, values: FloatArray, at: FloatArray) -> FloatArray:
+def right_values(s_m: FloatArray, values: FloatArray, at: FloatArray) -> FloatArray:
     """Linear interpolation; behind the jump where one lies exactly at ``at``."""
     before = np.minimum(np.searchsorted(s_m, at, side="right") - 1, len(s_m) - 1)
     return _between(s_m, values, at, before)
 
 
-def _left_values(s_m: FloatArray, values: FloatArray, at: FloatArray) -> FloatArray:
+def left_values(s_m: FloatArray, values: FloatArray, at: FloatArray) -> FloatArray:
     """The same, before the jump."""
     after = np.searchsorted(s_m, at, side="left")
     return np.where(

@@ -37,6 +37,9 @@ class Joints(NamedTuple):
     line: FloatArray  # of the file, where the geometry behind it stands
 
 
+NO_JOINTS: Final = Joints(np.zeros(0), np.zeros(0), np.zeros(0))
+
+
 @dataclass(frozen=True)
 class Stretch:
     """The knots of one road, in the direction in which it is driven."""
@@ -79,7 +82,7 @@ def sample(road: Contents, limits: Limits, offset_m: float) -> Stretch:
                 f"the line jumps by {gap:.3g} m at {start[0]:.6g} m of the route; correct x and y",
             )
         if following.element is not piece.element:
-            turn = _wrapped(following.headings_rad[0] - piece.headings_rad[1])
+            turn = wrapped(following.headings_rad[0] - piece.headings_rad[1])
             joints.append((float(start[0]), turn, float(following.element.line)))
         parts.append(piece.columns if jumps(end, start) else piece.columns[:, :-1])
     columns = np.concatenate([*parts, pieces[-1].columns], axis=1)
@@ -98,7 +101,7 @@ def jumps(end: FloatArray, start: FloatArray) -> bool:
     return bool(curvature_jump > _SAME_CURVATURE_PER_M or grade_jump > _SAME_GRADE)
 
 
-def _wrapped(angle_rad: float) -> float:
+def wrapped(angle_rad: float) -> float:
     """Return the same angle from -pi to pi."""
     return float(np.remainder(angle_rad + np.pi, 2.0 * np.pi) - np.pi)
 
