@@ -62,6 +62,13 @@ KEPT_BESIDE: Final = (
     "a file of its own"
 )
 
+# A printf format, the same in the native FMUs: file, metres, file.
+OLDER_READING: Final = (
+    "%s was probably learned on an older reading of this road (%d of 100 m have the same base "
+    "speed); the drive goes on with the base profile, and that file is left as it is. To carry "
+    "over what was learned: pldf profiles move %s --route ROAD, with the road's file and options"
+)
+
 # Bounds of every profile, and what the base profile is planned with: it must keep to them. Where 0
 # is in the range of a parameter, it stands for no bound.
 BOUNDS: Final = tuple(
@@ -204,10 +211,20 @@ class DrivingFunction(Instance[PldfState]):
         except ModelError as problem:  # it is no folder: nothing can be saved there, either
             self.report("warning", str(problem))
             return new
+        if st.profile_status == PROFILE_BASE and stored is None:
+            self._tell_older_reading(self._store, new)
         self._require_writable(self._store)
         if stored is None:
             return new
         return stored
+
+    def _tell_older_reading(self, store: ProfileStore, new: StoredProfile) -> None:
+        """Say so if the driver has a profile that this road, read otherwise, seems to hide."""
+        if not (drive.learns(self.record) or self.record.apply_learned):
+            return
+        older = store.older_reading(new.driver_id, new.route, new.base_mps)
+        if older is not None:
+            self.report("warning", OLDER_READING % (older.path, older.percent, older.path))
 
     def _require_writable(self, store: ProfileStore) -> None:
         """Tell before the drive, not after it, that what it teaches could not be saved."""

@@ -179,7 +179,7 @@ def test_the_functions_of_both_versions_are_known() -> None:
 FLOORS = (
     ("os", "disk", "model", "text"),
     ("importer", "profile", "profile_history", "prepared"),
-    ("store",),
+    ("store", "older"),
     ("run", "learning", "outcome"),
     ("session", "values", "state"),
     ("calls", "fmi2", "fmi3"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -12,6 +13,8 @@ from pldf import __version__, cli
 from pldf.build import first_use
 from pldf.build_version import build_version
 from pldf.commands import doctor
+from pldf.profiles.store import write_profile
+from two_readings import lesson, newer_reading, older_reading
 
 Capture = pytest.CaptureFixture[str]
 
@@ -121,6 +124,14 @@ def test_a_profile_store_is_looked_into(
 ) -> None:
     monkeypatch.setenv("PLDF_PROFILE_STORE", str(empty / "store"))
     assert examined(capsys)["profiles"] == f"0 in {empty / 'store'}, 0 put aside as unusable"
+    for route in (older_reading(), newer_reading()):
+        profile = lesson(route)[1]
+        write_profile(empty / "store" / f"{profile.route}.pldf", profile)
+    names = sorted(path.name for path in (empty / "store").glob("*.pldf"))
+    found = examined(capsys)["profiles"]
+    assert found.startswith("2 in ")
+    assert f"{names[0]} and {names[1]} are probably of one road, read in two ways" in found
+    shutil.rmtree(empty / "store")
     (empty / "store").touch()  # a file is no store
     found = examined(capsys, status=1)
     assert "cannot be written" in found["profiles"]

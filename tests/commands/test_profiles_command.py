@@ -16,7 +16,9 @@ from pldf.kernel.codes import BOUND_ACCEL, BOUND_JERK, BOUND_LEGAL_LIMIT
 from pldf.profiles.profile_file import encode
 from pldf.profiles.profile_format_1 import encode_1
 from pldf.profiles.store import ProfileStore, StoredProfile, read_profile, write_profile
+from pldf.roads import fingerprint, write_route_csv
 from profile_examples import DRIVER, ROUTE, drive_result, new_profile
+from two_readings import lesson, newer_reading, older_reading, other_road
 
 Run = Callable[..., tuple[int, str, str]]
 NAME = f"driver-000017_route-{ROUTE}.pldf"
@@ -297,3 +299,76 @@ def test_help_shows_an_example(run: Run, action: str) -> None:
     assert status == 0
     assert f"example:\n  pldf profiles {action} " in out
     assert f"pldf profiles {action} " in run("--help")[1]
+
+
+@pytest.fixture(scope="module")
+def older() -> StoredProfile:
+    """Return what driver 0 learned on an older reading of a road."""
+    return lesson(older_reading())[1]
+
+
+def moving(folder: Path, older: StoredProfile) -> tuple[Path, Path]:
+    """Keep ``older`` in a store and write the road as it is read now; return file and road."""
+    path = ProfileStore(folder / "moves").path(0, older.route)
+    write_profile(path, older)
+    road = folder / "road.csv"
+    write_route_csv(newer_reading(), road)
+    return path, road
+
+
+@pytest.mark.parametrize("by_number", [True, False])
+def test_move(run: Run, older: StoredProfile, tmp_path: Path, by_number: bool) -> None:
+    path, road = moving(tmp_path, older)
+    before = path.read_bytes()
+    name = ("0", "--store", "moves") if by_number else (str(path),)
+    status, out, err = run("move", *name, "--route", str(road))
+    assert (status, err) == (0, "")
+    new = ProfileStore(path.parent).path(0, fingerprint(newer_reading()))
+    assert out.splitlines()[-1] == f"written    {new}; {path} is left as it is"
+    assert "driver     0, 1 iterations carried over" in out
+    # The new bend, from where the car brakes for it to where it is as fast again.
+    assert "changed    1368 to 1939 m: base profile 98.2 to 69.1 km/h on average" in out
+    assert path.read_bytes() == before
+    moved = read_profile(new)
+    assert np.array_equal(
+        moved.iteration().learned_mps[:1300], older.iteration().learned_mps[:1300]
+    )
+    assert run("move", *name, "--route", str(road))[0] == 0  # the same again changes nothing
+    assert encode(read_profile(new)) == encode(moved)
+
+
+def test_move_takes_nothing_away(run: Run, older: StoredProfile, tmp_path: Path) -> None:
+    """What was learned on the new reading meanwhile stays, unless it is replaced by force."""
+    path, road = moving(tmp_path, older)
+    new = ProfileStore(path.parent).path(0, fingerprint(newer_reading()))
+    write_profile(new, lesson(newer_reading(), gas=((2400.0, 2500.0),))[1])
+    there = new.read_bytes()
+    status, _, err = run("move", str(path), "--route", str(road))
+    assert status == 1
+    assert "does not continue; not overwritten" in err and "--force" in err
+    assert new.read_bytes() == there
+    status, _, err = run("move", str(path), "--route", str(road), "--force")
+    assert status == 0
+    kept = new.with_name(new.name + ".replaced-1")
+    assert f"kept as {kept}" in err
+    assert kept.read_bytes() == there
+
+
+def test_move_refuses_what_is_no_older_reading(
+    run: Run, older: StoredProfile, tmp_path: Path
+) -> None:
+    path, road = moving(tmp_path, older)
+    write_route_csv(other_road(), road)
+    status, _, err = run("move", str(path), "--route", str(road))
+    assert status == 1
+    assert err.startswith(f"pldf: {path}: the profile of driver 0 (3000 m) and road (3000 m) do")
+    status, _, err = run("move", "0", "--store", "moves", "--route", str(road))
+    assert status == 1
+    assert f"name the file (there is: {path.name})" in err
+    status, _, err = run("move", "5", "--store", "moves", "--route", str(road))
+    assert "there is: none" in err
+    assert sorted(p.name for p in path.parent.iterdir()) == [path.name]
+    assert run("move", str(path))[0] == 2
+    status, out, _ = run("move", str(path), "--route", str(road), "--force", "--out", "forced.pldf")
+    assert status == 0 and "cut " in out
+    assert read_profile("forced.pldf").route == fingerprint(other_road())

@@ -83,7 +83,8 @@ class Profiles:
         if profile.route != fingerprint(self.route) or profile.nodes != self.route.nodes:
             raise ModelError(
                 f"{path}: learned on route {profile.route}, not on {self.route.name} "
-                f"({fingerprint(self.route)})"
+                f"({fingerprint(self.route)}); if that is an older reading of the same road, "
+                "'pldf profiles move' carries it over"
             )
         for one in profile.iterations:
             if one.kind not in _TAUGHT:

@@ -166,6 +166,12 @@ def _store(findings: Findings) -> None:
         store = ProfileStore(folder)
         count, refused = len(store.files()), len(store.refused())
         findings.add("profiles", f"{count} in {folder}, {refused} put aside as unusable")
+        for older, newer in store.readings_of_one_road():
+            findings.add(
+                "profiles",
+                f"{older.name} and {newer.name} are probably of one road, read in two ways: "
+                "'pldf profiles move' carries the older one over",
+            )
 
 
 def _cache(findings: Findings) -> None:

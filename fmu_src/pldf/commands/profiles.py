@@ -31,12 +31,15 @@ from ..profiles.store import (
 )
 from ..profiles.stored_profile import Iteration
 from ..recordings.interventions import runs
+from .shared.moving import add_move, chosen_older, move
+from .shared.road import required_road
 
 EXAMPLE: Final = """pldf profiles list --store profiles
   pldf profiles show profiles/driver-000017_route-0123456789abcdef.pldf --plot profile.png
   pldf profiles history 17 --store profiles
   pldf profiles export 17 --store profiles --out learned.csv
   pldf profiles rollback 17 --store profiles --to 2
+  pldf profiles move 17 --store profiles --route town.xodr --start-road 12
 
 All but 'list' take a profile file or, with a store, the number of a driver."""
 
@@ -49,6 +52,8 @@ _EXAMPLES: Final = {
     "export": "pldf profiles export driver-000017_route-0123456789abcdef.pldf --iteration 2\n"
     "  pldf profiles export 17 --store profiles --format 1 --out old.pldf",
     "rollback": "pldf profiles rollback 17 --store profiles --to 2",
+    "move": "pldf profiles move driver-000017_route-0123456789abcdef.pldf --route my_road.xodr\n"
+    "  pldf profiles move 17 --store profiles --route town.xodr --start-road 12 --to 45",
 }
 
 Action = Callable[[argparse.Namespace], None]
@@ -62,6 +67,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     _action(actions, "history", "show what each drive changed", _history)
     export = _action(actions, "export", "print s_m,base_mps,learned_mps,offset_mps as CSV", _export)
     rollback = _action(actions, "rollback", "make an older state the newest one", _rollback)
+    add_move(
+        _action(actions, "move", "carry what was learned over to a new reading of its road", _move)
+    )
     show.add_argument("--plot", metavar="PNG", type=Path, help="draw base and learned speed")
     for command in (show, export):
         command.add_argument(
@@ -119,10 +127,14 @@ def _store(options: argparse.Namespace) -> ProfileStore:
     return ProfileStore(folder)
 
 
+def _is_file(options: argparse.Namespace) -> bool:
+    """Tell whether a file is named, not the number of a driver."""
+    return Path(options.file).exists() or not re.fullmatch("[0-9]{1,9}", options.file)
+
+
 def _path(options: argparse.Namespace) -> Path:
-    path = Path(options.file)
-    if path.exists() or not re.fullmatch("[0-9]{1,9}", options.file):
-        return path
+    if _is_file(options):
+        return Path(options.file)
     store = _store(options)
     files = store.files_of(int(options.file))
     if not files:
@@ -254,6 +266,14 @@ def _rollback(options: argparse.Namespace) -> None:
     path = _path(options)
     profile = rollback_profile(path, options.to)
     print(f"{path}: iteration {len(profile.iterations)} is now a copy of iteration {options.to}")
+
+
+def _move(options: argparse.Namespace) -> None:
+    route = required_road(options).route
+    if _is_file(options):
+        move(Path(options.file), route, options)
+    else:
+        move(chosen_older(_store(options), int(options.file), route), route, options)
 
 
 def _plot(path: Path, profile: StoredProfile, iteration: Iteration) -> None:

@@ -33,6 +33,8 @@ from ..files.disk import (
     reason,
     rename_file,
 )
+from ..kernel.arrays import FloatArray
+from .older_reading import OlderReading, find_older_reading, pairs_of_one_road
 from .profile_file import same_history
 from .saving import (
     LOCK_TIMEOUT_S,
@@ -58,6 +60,7 @@ from .stored_profile import Iteration, ProfileRefused, StoredProfile
 __all__ = [
     "STORE_VARIABLE",
     "Iteration",
+    "OlderReading",
     "ProfileConflict",
     "ProfileRefused",
     "ProfileStore",
@@ -133,6 +136,22 @@ class ProfileStore:
             if profile is None:
                 raise refusal.followed_by(f"{outcome}; {_GOES_ON}") from None
             return profile
+
+    def older_reading(
+        self, driver_id: int, route: str, base_mps: FloatArray
+    ) -> OlderReading | None:
+        """Return what this driver probably learned on an older reading of a road; None: nothing.
+
+        Args:
+            driver_id: whose profile.
+            route: fingerprint of the road as it is read now.
+            base_mps: its base profile, m/s per node.
+        """
+        return find_older_reading(self.files_of(driver_id), driver_id, route, base_mps)
+
+    def readings_of_one_road(self) -> list[tuple[Path, Path]]:
+        """Return pairs of profiles of one driver that were probably learned on one road."""
+        return pairs_of_one_road(path for path in self.files() if ".conflict-" not in path.name)
 
     def append(self, profile: StoredProfile, iteration: Iteration) -> Saved:
         """Save ``profile``, as it was loaded for this drive (or new), with ``iteration`` added.

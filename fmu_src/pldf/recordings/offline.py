@@ -12,6 +12,7 @@ from ..errors import ModelError
 from ..findings import Finding
 from ..function import DrivingFunction
 from ..instance import view
+from ..kernel.arrays import FloatArray
 from ..kernel.codes import (
     BOUND,
     BOUND_LEGAL_LIMIT,
@@ -24,6 +25,7 @@ from ..kernel.stretch import stretch_factor, stretched_position
 from ..kernel.units import KMH_PER_MPS
 from ..outcome_words import NOT_LEARNED, TEXTS, pedal_words, set_speed_words
 from ..outcomes import Hold, Outcomes, PedalOutcome, SetSpeedOutcome, equal_runs
+from ..profiles.older_reading import is_older_reading
 from ..profiles.store import Iteration, StoredProfile
 from ..roads import Route, fingerprint
 from .derived import completed
@@ -80,7 +82,7 @@ def learn_from(
     elif stored.route != fingerprint(route):
         raise ModelError(
             f"the profile belongs to route {stored.route}, not to {route.name} "
-            f"({fingerprint(route)}); give the route of that drive or leave out --profile-in"
+            f"({fingerprint(route)}); {_way_out(stored, np.array(function.profile.base_mps))}"
         )
     function.follow(stored)
     whole = completed(recording, function, file)
@@ -96,6 +98,16 @@ def learn_from(
     iteration = function.learn("learn")
     notes = (*whole.notes, *_contradicted(recording, function, file, named))
     return Learned(function, stored.with_iteration(iteration), iteration, notes)
+
+
+def _way_out(stored: StoredProfile, base_mps: FloatArray) -> str:
+    """Return what to do with a profile of another road than the one with this base profile."""
+    if is_older_reading(stored.iteration().base_mps, base_mps):
+        return (
+            "it was probably learned on an older reading of this road: 'pldf profiles move' "
+            "carries it over"
+        )
+    return "give the route of that drive or leave out --profile-in"
 
 
 def _contradicted(

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from ...fmi.phases import Phase
 from ...fmi.session import STEP_MAX_S
-from ...function import LEARNED
+from ...function import LEARNED, OLDER_READING
 from ...kernel.arrays import NextArrays, ProfileArrays, TraceArrays
 from ...kernel.codes import BOUND, LOCALIZATION, OUTCOME, PROFILE_STATUS
 from ...kernel.ranges import LAST_NODE, NODES, Range, columns_of, ranges_of
@@ -21,6 +21,7 @@ from ...kernel.units import KMH_PER_MPS
 from ...outcome_words import BOUND_WORDS, HOLDS_TOLD, TEXTS, TRANSITION_MIN_M
 from ...outcomes import SAME_OFFSET_MPS
 from ...profiles.file_parts import ALIGNMENT, CHECKSUM_SIZE, COLUMNS, NODES_MAX, Column
+from ...profiles.older_reading import ALIKE_MPS, ALIKE_SHARE, LENGTH_SHARE
 from ...profiles.profile_format_1 import COLUMNS_1
 from ...profiles.stored_profile import KINDS
 from .model import NativeModel
@@ -84,9 +85,13 @@ def header(model: NativeModel) -> str:
         "STEP_MAX_S": STEP_MAX_S,
         "KMH_PER_MPS": KMH_PER_MPS,
         "SAME_OFFSET_MPS": SAME_OFFSET_MPS,
+        "LENGTH_SHARE": LENGTH_SHARE,
+        "ALIKE_SHARE": ALIKE_SHARE,
+        "ALIKE_MPS": ALIKE_MPS,
     }
     lines += [f"#define {name} {_number(value)}" for name, value in numbers.items()]
-    lines += [f"#define TEXT_{name} {_text(text)}" for name, text in TEXTS.items()]
+    texts = {**TEXTS, "OLDER_READING": OLDER_READING}
+    lines += [f"#define TEXT_{name} {_text(text)}" for name, text in texts.items()]
     return "\n".join([*lines, ""])
 
 

@@ -23,6 +23,11 @@ static bool learns(const State *state) {
     return state->record[l->learn_if[0]].integer || state->record[l->learn_if[1]].integer;
 }
 
+/* Whether it matters to this drive what is there. */
+static bool uses_store(const State *state) {
+    return learns(state) || state->record[model.learning->apply_learned].integer;
+}
+
 /* Fills in the folder; if there is none, returns and tells why. */
 static int64_t find_store(const Importer *importer, const State *state, Run *run) {
     char found[PATH_SIZE] = "", why[REASON_SIZE];
@@ -35,7 +40,7 @@ static int64_t find_store(const Importer *importer, const State *state, Run *run
                                          "saved", given, why);
         return PROFILE_STATUS_REFUSED;
     }
-    if (learns(state) || state->record[model.learning->apply_learned].integer)
+    if (uses_store(state))
         importer_tell(importer, WARNING, "no profile store: nothing is loaded or saved. Set the "
                       "parameter profile_store or the environment variable PLDF_PROFILE_STORE to a "
                       "folder.");
@@ -47,6 +52,9 @@ static int64_t load_profile(const Importer *importer, const State *state, Run *r
     if (status != PROFILE_STATUS_BASE) return status;
     StoreResult found = store_load(importer, run->folder, &run->stored);
     if (found == STORE_NO_FOLDER) return PROFILE_STATUS_REFUSED;
+    const double *base = run->block + model.learning->base_column * state->nodes;
+    if (found == STORE_ABSENT && uses_store(state))
+        store_tell_older(importer, run->folder, &run->stored, base);
     /* Told before the drive, not after it. */
     if (learns(state) && !store_writable(importer, run->folder)) return PROFILE_STATUS_NOT_WRITABLE;
     if (found == STORE_REFUSED || found == STORE_UNREADABLE) return PROFILE_STATUS_REFUSED;

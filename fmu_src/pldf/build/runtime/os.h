@@ -27,6 +27,8 @@ bool os_rename(const char *from, const char *to);
 void os_remove(const char *path);
 bool os_make_folder(const char *path);
 DiskEntry os_entry(const char *path);
+/* Visits the names in a folder, in any order; none if it cannot be read. */
+void os_each_name(const char *folder, void visit(void *context, const char *name), void *context);
 void os_follow(char *path); /* PATH_SIZE bytes: to what a link leads to */
 /* Whether we have the lock of the open file, and it still is the one at `path`. If somebody else has
    it, errno is EAGAIN, EACCES or EDEADLK. */

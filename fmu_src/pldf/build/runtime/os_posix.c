@@ -1,5 +1,6 @@
 #ifndef _WIN32
 #define _GNU_SOURCE
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -93,6 +94,14 @@ DiskEntry os_entry(const char *path) {
     Status status;
     if (lstat(path, &status) != 0) return NO_ENTRY;
     return stat(path, &status) == 0 && S_ISDIR(status.st_mode) ? FOLDER : OTHER_ENTRY;
+}
+
+void os_each_name(const char *folder, void visit(void *context, const char *name), void *context) {
+    DIR *names = opendir(folder);
+    if (!names) return;
+    for (struct dirent *entry = readdir(names); entry; entry = readdir(names))
+        visit(context, entry->d_name);
+    closedir(names);
 }
 
 void os_follow(char *path) {

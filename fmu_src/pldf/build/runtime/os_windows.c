@@ -85,6 +85,20 @@ DiskEntry os_entry(const char *path) {
     return found & FILE_ATTRIBUTE_DIRECTORY ? FOLDER : OTHER_ENTRY;
 }
 
+void os_each_name(const char *folder, void visit(void *context, const char *name), void *context) {
+    char pattern[PATH_SIZE], name[4 * MAX_PATH];
+    WIN32_FIND_DATAW entry;
+    Wide w;
+    if (snprintf(pattern, sizeof pattern, "%s/*", folder) >= PATH_SIZE) return;
+    HANDLE names = FindFirstFileW(wide(pattern, w), &entry);
+    if (names == INVALID_HANDLE_VALUE) return;
+    do {
+        if (WideCharToMultiByte(CP_UTF8, 0, entry.cFileName, -1, name, sizeof name, NULL, NULL) > 0)
+            visit(context, name);
+    } while (FindNextFileW(names, &entry));
+    FindClose(names);
+}
+
 void os_follow(char *path) {
     Wide w, full;
     DWORD found = GetFileAttributesW(wide(path, w));

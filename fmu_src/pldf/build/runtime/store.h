@@ -16,4 +16,8 @@ Level store_save(const Importer *importer, const char *folder, const Profile *pr
                  const Lesson *lesson);
 /* Tries to write in the folder, or where it would be made, without leaving anything; else tells. */
 bool store_writable(const Importer *importer, const char *folder);
+/* Tells of a profile of this driver that was probably learned on an older reading of the road whose
+   base profile is `base`, if there is one (older.c). */
+void store_tell_older(const Importer *importer, const char *folder, const Profile *wanted,
+                      const double *base);
 void profile_free(Profile *profile);
