@@ -12,7 +12,7 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, Final, Literal, NoReturn, TypeVar, get_args, get_origin
+from typing import Annotated, Any, Final, Literal, NoReturn, TypeVar, get_args, get_origin
 
 import msgspec
 
@@ -84,7 +84,7 @@ class TomlFile:
             is_table = isinstance(value[unknown[1]], dict)
             known = [n for n, t in _fields(declared).items() if _is_table(t) or not is_table]
             self.unknown((*key, unknown[1]), known)
-        if at and at["item"]:
+        if at and at["item"] and get_origin(declared) is not Annotated:
             declared, value = get_args(declared)[0], value[int(at["item"])]
         self.fail(key, f"{shown(value)} must be {_allowed(declared, key)}")
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
+from networks import crossing
 from pldf import cli
 from pldf.cosim.prepared import prepared_route
 from pldf.durations import minutes
@@ -178,3 +179,42 @@ def test_minutes_are_rounded_as_a_whole() -> None:
     assert minutes(65.2) == "1:05"
     assert minutes(359_999.97, 1) == "6000:00.0"
     assert minutes(59.94, 1) == "0:59.9"
+
+
+def test_the_way_is_shown_with_names_and_directions(run: Run) -> None:
+    town = crossing()
+    town.roads[1] = town.roads[1].replace('<road id="s"', '<road id="s" name="South Street"')
+    Path("town.xodr").write_text(town.text)
+    status, out, _ = run("town.xodr", "--start-road", "w", "--to", "s")
+    assert status == 0
+    assert "way          w; ws; s South Street (against)\n" in out
+    exported = run("town.xodr", "--start-road", "w", "--to", "s", "--export", "my.csv")
+    assert exported[0] == 0
+    assert read_route("my.csv").length_m == pytest.approx(200.0 + 10.0 * 2.0**0.5, abs=0.01)
+
+
+def test_the_roads_of_a_file_are_listed(run: Run) -> None:
+    town = crossing()
+    town.roads[0] = town.roads[0].replace('max="50"', 'max="70"')
+    town.roads[3] = town.roads[3].replace("<speed", "<nothing")
+    Path("town.xodr").write_text(town.text)
+    status, out, err = run("town.xodr", "--list")
+    assert (status, err) == (0, "")
+    plain, inner = (part.splitlines() for part in out.split("\n\n")[:2])
+    assert [line.split() for line in plain[1:]] == [
+        ["w", "100.0", "m", "70", "km/h", "1", "+", "1", "s,", "e,", "n", "-"],
+        ["s", "100.0", "m", "50", "km/h", "1", "+", "1", "w,", "e,", "n", "-"],
+        ["e", "100.0", "m", "50", "km/h", "1", "+", "1", "-", "w,", "s,", "n"],
+        ["n", "100.0", "m", "none", "1", "+", "1", "-", "w,", "s,", "e"],
+    ]
+    assert inner[1].split() == ["J", "ws", "14.1", "m", "50", "km/h", "1", "+", "0", "s", "-"]
+    assert "4 roads, 12 connecting roads in junctions" in out
+
+
+@pytest.mark.parametrize(("source", "row"), [("study", "1     Study road"), ("my.csv", "-")])
+def test_a_file_may_be_one_road(run: Run, source: str, row: str) -> None:
+    Path("my.csv").write_text("s_m,curvature_per_m,speed_limit_mps\n0,0,20\n900,0,20\n")
+    status, out, _ = run(source, "--list")
+    assert status == 0
+    assert out.splitlines()[1].startswith(row)
+    assert "\n1 road, 0 connecting roads in junctions\n" in out

@@ -65,7 +65,7 @@ def test_a_choice_is_refused_with_the_ways_and_what_to_type(driven: Driven) -> N
     assert "road s (right by 45 degrees, through road ws, 14.1 m)" in text
     assert "road e (straight on, through road we, 20 m)" in text
     assert "road n (left by 45 degrees, through road wn, 14.1 m)" in text
-    assert "say where to go: --start-road w --via s (or e, n); --to w ends the way here" in text
+    assert "say where to go: --start-road w --via s (or e, n); --start-road w --to w ends" in text
     for name, way in {"s": ["w", "ws", "-s"], "n": ["w", "wn", "n"]}.items():
         assert driven(crossing(), start_road="w", via=(name,)) == way
 

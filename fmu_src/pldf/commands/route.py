@@ -12,12 +12,18 @@ from ..cosim.prepared import SUFFIX, write_prepared_route
 from ..durations import minutes
 from ..errors import ModelError
 from ..kernel.units import KMH_PER_MPS
-from ..roads import fingerprint, open_road, write_route_csv
+from ..roads import fingerprint, open_road, roads_of, write_route_csv
 from ..route_facts import BINDING_MPS, RouteFacts, route_facts
 from .shared.road import add_road, road_options
+from .shared.road_table import road_table
 from .shared.telling import listed
 
-EXAMPLE: Final = "pldf route study --plot study.png"
+EXAMPLE: Final = (
+    "pldf route study --plot study.png\n"
+    "  pldf route town.xodr --list\n"
+    "      the roads of a town, and the ways on from each\n"
+    "  pldf route town.xodr --start-road 12 --via 45 --to 7 --export my_way.csv"
+)
 
 _LISTED_MAX: Final = 24
 _PICTURES: Final = (".png", ".pdf", ".svg")
@@ -26,6 +32,10 @@ _PICTURES: Final = (".png", ".pdf", ".svg")
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_road(parser, "what to show", by_position=True)
+    parser.add_argument(
+        "--list", action="store_true",
+        help="show the roads of the file and the ways on from each, instead of one way",
+    )  # fmt: skip
     parser.add_argument(
         "--plot", metavar="PNG", type=_picture, help="draw limits, curvature and base profile"
     )
@@ -39,6 +49,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Print the summary; draw and export if asked to; tell what was found at the end."""
+    if options.list:
+        rows = roads_of(options.road, road_options(options))
+        print("\n".join(road_table(rows)))
+        return
     route = open_road(options.road, road_options(options)).route
     facts = route_facts(route)
     print("\n".join(_summary(facts)))
@@ -61,6 +75,9 @@ def _summary(facts: RouteFacts) -> Iterator[str]:
     mean = (len(facts.base_mps) - 1) / time_s * KMH_PER_MPS
     yield f"route        {route.name}"
     yield f"length       {route.length_m:.1f} m" + ("" if route.has_line else ", no x and y")
+    roads = [mark for mark in route.marks if mark.kind == "road"]
+    if roads:
+        yield from _listed("way", [f"{m.name} (against)" if m.against else m.name for m in roads])
     yield from _listed("limits", [f"{s:.0f} m: {_kmh(v)}" for s, v in facts.limits])
     yield f"curves       {len(facts.curves)} bind (over {_kmh(BINDING_MPS)} below the limit)"
     shown = [f"{c.start_m:.0f} m: {_kmh(c.speed_mps)}, R {c.radius_m:.0f} m" for c in facts.curves]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from .csv_file import write_route_csv
-from .load import Road, chosen_route, open_road, open_route, packed_route, read_route
+from .listing import RoadRow
+from .load import Road, chosen_route, open_road, open_route, packed_route, read_route, roads_of
 from .options import AS_WRITTEN, RoadOptions
 from .route import Mark, Route, fingerprint, route_arrays
 
@@ -12,6 +13,7 @@ __all__ = [
     "Mark",
     "Road",
     "RoadOptions",
+    "RoadRow",
     "Route",
     "chosen_route",
     "fingerprint",
@@ -19,6 +21,7 @@ __all__ = [
     "open_route",
     "packed_route",
     "read_route",
+    "roads_of",
     "route_arrays",
     "write_route_csv",
 ]

@@ -102,7 +102,5 @@ def refusal(
     where = f"{network.place.path}, line {link.line}, road {leg.id}"
     first, *others = names_for(legs, ways)
     suggested = replace(options, via=(*options.via, first))
-    more = f" (or {some(others)}); --to {leg.id} ends the way here"
-    return OptionNeededError(
-        f"{where}: {described(network, leg, ways)}; say where to go", suggested, more
-    )
+    matter = f"{where}: {described(network, leg, ways)}; say where to go"
+    return OptionNeededError(matter, suggested, some(others), replace(options, to=leg.id))

@@ -10,6 +10,7 @@ from typing import Final
 
 from ..errors import ModelError
 from .csv_file import parse_route_csv
+from .listing import RoadRow, csv_row, opendrive_rows
 from .opendrive import parse_opendrive
 from .options import AS_WRITTEN, LimitUnit, OptionNeededError, RoadOptions, arguments
 from .route import Route
@@ -31,15 +32,24 @@ def read_route(path: Path | str, options: RoadOptions = AS_WRITTEN) -> Route:
         ModelError: when the file cannot be read or used; names file, line and way out.
     """
     path = Path(path)
+    data = _content(path)
+    if _is_opendrive(data, path):
+        return parse_opendrive(data, path, options)
+    return parse_route_csv(data, path, options.smoothing_m)
+
+
+def _content(path: Path) -> bytes:
     try:
         data = path.read_bytes()
     except OSError as error:
         raise ModelError(f"{path}: cannot be read ({error.strerror}); check the path") from None
     if not data.strip():
         raise ModelError(f"{path}: the file is empty")
-    if b"<OpenDRIVE" in data or path.suffix.lower() in (".xodr", ".xml"):
-        return parse_opendrive(data, path, options)
-    return parse_route_csv(data, path, options.smoothing_m)
+    return data
+
+
+def _is_opendrive(data: bytes, path: Path) -> bool:
+    return b"<OpenDRIVE" in data or path.suffix.lower() in (".xodr", ".xml")
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,9 +79,25 @@ def open_road(name: str, options: RoadOptions = AS_WRITTEN) -> Road:
     Raises:
         ModelError: as ``read_route``, or there is no packed route with this number.
     """
-    route_id = None if Path(name).exists() else _packed_id(name)
-    file = Path(name) if route_id is None else _packed_file(route_id)
+    route_id, file = _found(name)
     return Road(read_route(file, options), route_id, file, options == AS_WRITTEN)
+
+
+def roads_of(name: str, options: RoadOptions = AS_WRITTEN) -> list[RoadRow]:
+    """Return the roads of the file that a person named, those of junctions last.
+
+    Args:
+        name: as for ``open_road``.
+        options: how limits are to be read; what is said of a way does not matter.
+
+    Raises:
+        ModelError: the file cannot be read.
+    """
+    _, path = _found(name)
+    data = _content(path)
+    if _is_opendrive(data, path):
+        return opendrive_rows(data, path, options)
+    return [csv_row(parse_route_csv(data, path, options.smoothing_m))]
 
 
 def open_route(  # noqa: PLR0913 - all by keyword, as a person says them
@@ -117,6 +143,12 @@ def packed_route(route_id: int) -> Route:
     return read_route(_packed_file(route_id))
 
 
+def _found(name: str) -> tuple[int | None, Path]:
+    """Return the number of the packed route that a person named, None for a file, and the file."""
+    route_id = None if Path(name).exists() else _packed_id(name)
+    return route_id, Path(name) if route_id is None else _packed_file(route_id)
+
+
 def _packed_id(name: str) -> int | None:
     if name == "study":
         return STUDY_ROAD_ID
@@ -141,6 +173,6 @@ def chosen_route(route_id: int, route_file: str) -> Route:
     try:
         return read_route(route_file)
     except OptionNeededError as error:  # a model has no such options: its route_file must say all
-        command = f"pldf route {shlex.quote(route_file)} {arguments(error.suggested)}"
-        told = f"{error.matter}: {command} --export my.csv{error.more}; then take my.csv"
+        route = f"pldf route {shlex.quote(route_file)}"
+        told = error.told(lambda options: f"{route} {arguments(options)} --export my.csv")
         raise ModelError(told) from None

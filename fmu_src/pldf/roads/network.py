@@ -14,17 +14,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, replace
 
-from ..findings import Finding
+from ..findings import Finding, Severity
 from .ends import Ends
 from .leg import Leg, lane_counts
+from .meetings import ENDS, Meetings, link_at
 from .xml_tree import Element, Place
-
-_LINK: Final = {"start": "predecessor", "end": "successor"}
-_OTHER: Final = {"start": "end", "end": "start"}
-_ENDS: Final = ("start", "end")
 
 
 @dataclass(frozen=True)
@@ -60,6 +56,7 @@ class Network:
         self.roads = _by_id(root.all("road"), place)
         self.junctions = _by_id(root.all("junction"), place)
         self.ends = Ends(place)
+        self._meetings = Meetings(self.roads, self.junctions, self.ends)
         self._onward: dict[Leg, Onward] = {}
         self._lanes: dict[str, tuple[int, int] | None] = {}
         self._connections: dict[str, dict[str, list[Element]]] = {}
@@ -90,17 +87,17 @@ class Network:
 
     def nothing_behind(self, leg: Leg) -> bool:
         """Tell whether no road and no junction of the file is linked to the rear of the leg."""
-        link = _link(leg.road, leg.rear)
+        link = link_at(leg.road, leg.rear)
         if link is None:
             return True
         name = link.attributes.get("elementId", "")
-        return name not in (self.junctions if self._to_junction(link) else self.roads)
+        return name not in (self.junctions if self._meetings.to_junction(link) else self.roads)
 
     def _read_onward(self, leg: Leg) -> Onward:
-        link = _link(leg.road, leg.front)
+        link = link_at(leg.road, leg.front)
         if link is None:
             return Onward()
-        if self._to_junction(link):
+        if self._meetings.to_junction(link):
             return self._through_junction(leg, link)
         name = link.attributes.get("elementId", "")
         if name not in self.roads:
@@ -110,52 +107,36 @@ class Network:
             return self._nowhere(leg, link, text)
         return Onward((self._linked(leg, link, self.roads[name]),), link=link)
 
-    def _to_junction(self, link: Element) -> bool:
-        name = link.attributes.get("elementId", "")
-        usual = "junction" if name in self.junctions and name not in self.roads else "road"
-        return link.attributes.get("elementType", usual) == "junction"
-
     def _nowhere(self, leg: Leg, link: Element, text: str) -> Onward:
         told = self._told("note", leg, link, text, "the way ends here")
         return Onward(told=(told,), link=link)
 
-    def _told(self, severity: str, leg: Leg, at: Element, text: str, then: str) -> Finding:
-        assert severity in ("note", "warning")
-        place = f"road {leg.id}"
-        return Finding(severity, str(self.place.path), at.line, place, text, then)  # type: ignore[arg-type]
+    def _told(
+        self, severity: Severity, leg: Leg, at: Element, text: str, then: str = ""
+    ) -> Finding:
+        return Finding(severity, str(self.place.path), at.line, f"road {leg.id}", text, then)
 
     # A link from road to road.
 
     def _linked(self, leg: Leg, link: Element, road: Element) -> Step:
         stated = link.attributes.get("contactPoint", "").strip().lower()
         entered = Leg(road, against=False)
-        own = [end for end in _ENDS if self._names(entered, end, leg)]
-        if stated in _ENDS and (stated in own or not own):
+        own = [end for end in ENDS if self._meetings.names(entered, end, leg)]
+        if stated in ENDS and (stated in own or not own):
             return Step(Leg(road, against=stated == "end"))
-        end = self._nearest(entered, own if len(own) == 1 and stated not in _ENDS else _ENDS, leg)
-        if stated in _ENDS:
+        end = self._meetings.nearest(
+            entered, own if len(own) == 1 and stated not in ENDS else ENDS, leg
+        )
+        if stated in ENDS:
             text = f"<{link.tag}> names the {stated} of road {entered.id}, which is linked to here "
             text += f"by its {own[0]}"
         else:
             text = f"<{link.tag}> does not say at which end road {entered.id} is met (contactPoint)"
         told = self._told(
-            "note" if stated not in _ENDS else "warning",
+            "note" if stated not in ENDS else "warning",
             leg, link, text, f"driven from its {end} on, where the lines meet",
         )  # fmt: skip
         return Step(Leg(road, against=end == "end"), (told,))
-
-    def _names(self, entered: Leg, end: str, leg: Leg) -> bool:
-        """Tell whether the link of a road at this end is to the front of ``leg``."""
-        link = _link(entered.road, end)
-        return (
-            link is not None
-            and not self._to_junction(link)
-            and link.attributes.get("elementId") == leg.id
-            and link.attributes.get("contactPoint", leg.front).strip().lower() == leg.front
-        )
-
-    def _nearest(self, entered: Leg, ends: Iterable[str], leg: Leg) -> str:
-        return min(ends, key=lambda end: self.ends.distance_m(entered, end, leg, leg.front))
 
     # Through a junction.
 
@@ -163,16 +144,28 @@ class Network:
         name = link.attributes.get("elementId", "")
         if name not in self.junctions:
             return self._nowhere(leg, link, f"junction {name!r} is not in the file")
+        connections = self._connections_of(name).get(leg.id, [])
         steps: dict[Leg, Step] = {}
-        for connection in self._connections_of(name).get(leg.id, []):
+        for connection in connections:
             step = self._connected(leg, connection, name)
             if step is not None:
                 steps.setdefault(step.leg, step)
         if steps:
-            return Onward(tuple(steps.values()), (), link, name)
-        text = f"junction {name} has no connection that leaves from here"
+            missing = self._missing(leg, connections, name)
+            with_missing = (replace(step, told=step.told + missing) for step in steps.values())
+            return Onward(tuple(with_missing), (), link, name)
+        text = f"junction {name} has no connection that leaves from here on a lane for cars"
         told = self._told("note", leg, link, text, "the way ends here")
         return Onward((), (told,), link, name)
+
+    def _missing(self, leg: Leg, connections: list[Element], name: str) -> tuple[Finding, ...]:
+        """Return what is told of connections to roads that are not in the file."""
+        named = {_leads_to(each): each for each in connections}
+        return tuple(
+            self._told("note", leg, each, f"junction {name}: road {road!r} is not in the file")
+            for road, each in named.items()
+            if road not in self.roads
+        )
 
     def _connections_of(self, junction: str) -> dict[str, list[Element]]:
         """Return the connections of a junction by the road that they can be entered from."""
@@ -187,15 +180,14 @@ class Network:
         return self._connections[junction]
 
     def _connected(self, leg: Leg, connection: Element, junction: str) -> Step | None:
-        linked = connection.attributes.get("linkedRoad")
-        if linked is not None:
-            return self._directly(leg, connection, linked, junction)
-        name = connection.attributes.get("connectingRoad", "")
+        name = _leads_to(connection)
+        if "linkedRoad" in connection.attributes:
+            return self._directly(leg, connection, name, junction)
         if name not in self.roads:
             return None
         entered = Leg(self.roads[name], against=False)
         stated = connection.attributes.get("contactPoint", "").strip().lower()
-        end, doubt = self._contact(leg, entered, stated, junction)
+        end, doubt = self._meetings.contact(leg, entered, stated, junction)
         if end is None:
             return None
         way = Leg(entered.road, against=end == "end")
@@ -207,75 +199,26 @@ class Network:
         told = self._told("warning", leg, connection, doubt, f"driven from its {end} on")
         return Step(way, (told,))
 
-    def _contact(
-        self, leg: Leg, entered: Leg, stated: str, junction: str
-    ) -> tuple[str | None, str]:
-        """Return the end of a connecting road that lies at the front of ``leg``, and doubts."""
-        own = [end for end in _ENDS if self._begins_at(leg, entered, end, junction)]
-        if stated in own:
-            return stated, ""
-        if own:
-            if stated not in _ENDS:
-                return self._nearest(entered, own, leg), ""
-            text = f"junction {junction} says that road {entered.id} is met at its {stated}, "
-            return own[0], text + f"the road's own link that it is met at its {own[0]}"
-        silent = [end for end in _ENDS if self._says_nothing(entered, end)]
-        if stated in _ENDS:
-            silent = [end for end in silent if end == stated]
-        near = [end for end in silent if self._lies_at_front(leg, entered, end)]
-        return (self._nearest(entered, near, leg) if near else None), ""
-
-    def _begins_at(self, leg: Leg, entered: Leg, end: str, junction: str) -> bool:
-        link = _link(entered.road, end)
-        if link is None or self._to_junction(link) or link.attributes.get("elementId") != leg.id:
-            return False
-        stated = link.attributes.get("contactPoint", "").strip().lower()
-        if stated == leg.front:
-            return True
-        rear = _link(leg.road, leg.rear)
-        both = (
-            rear is not None
-            and self._to_junction(rear)
-            and rear.attributes.get("elementId") == junction
-        )
-        if stated == leg.rear and both:
-            return False
-        # The end is not stated, or it is one that is not at this junction.
-        return not (both or stated) or self._lies_at_front(leg, entered, end)
-
-    def _says_nothing(self, entered: Leg, end: str) -> bool:
-        link = _link(entered.road, end)
-        return link is None or self._to_junction(link)
-
-    def _lies_at_front(self, leg: Leg, entered: Leg, end: str) -> bool:
-        front, rear = (
-            self.ends.distance_m(entered, end, leg, each) for each in (leg.front, leg.rear)
-        )
-        return front <= rear
-
     def _directly(self, leg: Leg, connection: Element, linked: str, junction: str) -> Step | None:
         """Return the step through a direct junction, whose roads touch each other."""
         forth = connection.attributes.get("incomingRoad") == leg.id
         name = linked if forth else connection.attributes.get("incomingRoad", "")
         stated = connection.attributes.get("contactPoint", "").strip().lower()
-        if name not in self.roads or (not forth and stated in _ENDS and stated != leg.front):
+        if name not in self.roads or (not forth and stated in ENDS and stated != leg.front):
             return None
         entered = Leg(self.roads[name], against=False)
-        ends = [end for end in _ENDS if self._is_at(entered, end, junction)]
-        if forth and stated in _ENDS:
+        ends = [end for end in ENDS if self._meetings.is_at(entered, end, junction)]
+        if forth and stated in ENDS:
             ends = [stated]
         if not ends:
             return None
-        way = Leg(entered.road, against=self._nearest(entered, ends, leg) == "end")
+        way = Leg(entered.road, against=self._meetings.nearest(entered, ends, leg) == "end")
         return None if self.has_lane(way) is False else Step(way)
 
-    def _is_at(self, leg: Leg, end: str, junction: str) -> bool:
-        link = _link(leg.road, end)
-        return (
-            link is not None
-            and self._to_junction(link)
-            and link.attributes.get("elementId") == junction
-        )
+
+def _leads_to(connection: Element) -> str:
+    given = connection.attributes
+    return given.get("linkedRoad", given.get("connectingRoad", ""))
 
 
 def _by_id(elements: Iterable[Element], place: Place) -> dict[str, Element]:
@@ -287,7 +230,3 @@ def _by_id(elements: Iterable[Element], place: Place) -> dict[str, Element]:
             raise place.error(element, f"<{element.tag}> {text}")
         by_id[name] = element
     return by_id
-
-
-def _link(road: Element, end: str) -> Element | None:
-    return next(road.all("link", _LINK[end]), None)

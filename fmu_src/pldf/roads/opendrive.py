@@ -46,7 +46,9 @@ def parse_opendrive(data: bytes, path: Path, options: RoadOptions) -> Route:
     s_m, curvature, limit, grade, x_m, y_m = knots
     header = root.find("header")
     name = header.attributes.get("name", "").strip() if header is not None else ""
-    marks = tuple(Mark(s, "road", _named(leg)) for s, leg in zip(starts_m, legs, strict=False))
+    marks = tuple(
+        Mark(s, "road", _named(leg), leg.against) for s, leg in zip(starts_m, legs, strict=False)
+    )
     return Route(
         name or path.stem,
         s_m,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -48,10 +49,30 @@ class OptionNeededError(ModelError):
     its own way to say it.
     """
 
-    def __init__(self, matter: str, suggested: RoadOptions, more: str = "") -> None:
-        """Keep what is the matter, the options that would do, and what else to say about them."""
-        self.matter, self.suggested, self.more = matter, suggested, more
-        super().__init__(f"{matter}: {arguments(suggested)}{more}")
+    def __init__(
+        self,
+        matter: str,
+        suggested: RoadOptions,
+        others: str = "",
+        ending: RoadOptions | None = None,
+    ) -> None:
+        """Keep what can be said.
+
+        Args:
+            matter: what is the matter, with file, line and road.
+            suggested: all options that would do.
+            others: what could be said in place of the last of them.
+            ending: the options that end the way here instead.
+        """
+        self.matter, self.suggested = matter, suggested
+        self._others, self._ending = others, ending
+        super().__init__(self.told(arguments))
+
+    def told(self, say: Callable[[RoadOptions], str]) -> str:
+        """Return the whole as a person reads it where options are written as ``say`` does."""
+        others = f" (or {self._others})" if self._others else ""
+        ending = "" if self._ending is None else f"; {say(self._ending)} ends the way here"
+        return f"{self.matter}: {say(self.suggested)}{others}{ending}"
 
 
 def arguments(options: RoadOptions) -> str:

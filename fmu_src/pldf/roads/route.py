@@ -32,6 +32,7 @@ class Mark(NamedTuple):
     s_m: float
     kind: Literal["road", "sign"]  # a road of the file begins, a sign stands
     name: str
+    against: bool = False  # a road that is driven against the direction in which it is drawn
 
 
 @dataclass(frozen=True, eq=False)

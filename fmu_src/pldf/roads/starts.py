@@ -51,7 +51,7 @@ def start_of(
     raise OptionNeededError(
         f"{network.place.path}: the route could start at road {some(found)}; name one",
         replace(options, start_road=found[0]),
-        f" (or {some(found[1:])})",
+        some(found[1:]),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Final
@@ -16,7 +16,8 @@ from ..errors import ModelError
 from ..findings import Finding
 from ..kernel.signals import Signal, signals_of
 from ..kernel.state import PldfState
-from ..roads import Road, RoadOptions, open_road
+from ..roads import AS_WRITTEN, Road, RoadOptions, open_road
+from ..roads.options import OptionNeededError
 from ..settings import parameter_value
 from ..toml_file import Key, TomlFile, listed, shown
 from .participants import DRIVER_SIGNALS, Participant, StudySettings
@@ -117,7 +118,7 @@ def read_study(path: Path, changes: Mapping[Key, Any] | None = None) -> Study:
     notes: list[Finding] = []
     people = _participants(file, tables, notes)
     settings = StudySettings(
-        road=_road(file, tables),
+        road=_road(file, tables, typed=bool(changes)),
         phases=_phases(file, tables),
         counterbalanced=tables.drives.order == "counterbalanced",
         function=_parameters(file, "function", SETTABLE["function"]),
@@ -177,16 +178,36 @@ def _coded(signal: Signal, value: Any) -> float | int:
     return float(value) if signal.kind == "Real" else int(value)
 
 
-def _road(file: TomlFile, tables: StudyTables) -> Road:
+def _road(file: TomlFile, tables: StudyTables, *, typed: bool) -> Road:
+    """Return the road; ``typed``: what the file says was typed as options of a command."""
     road = tables.road
     beside = file.path.parent / road.route
     try:
         return open_road(
             str(beside) if beside.is_file() else road.route,
-            RoadOptions(**{f: value for f, value in asdict(road).items() if f != "route"}),
+            RoadOptions(**{name: _said(v) for name, v in asdict(road).items() if name != "route"}),
         )
+    except OptionNeededError as problem:  # this file has keys where a command has options
+        file.fail(("road", "route"), str(problem) if typed else problem.told(_keys))
     except ModelError as problem:
         file.fail(("road", "route"), str(problem))
+
+
+def _said(value: Any) -> Any:
+    """Return a value of the table [road] as the reader wants it; ids may be written as numbers."""
+    if isinstance(value, tuple):
+        return tuple(map(str, value))
+    return str(value) if type(value) is int else value
+
+
+def _keys(options: RoadOptions) -> str:
+    """Return the options as they are written into the table [road]."""
+    said = {f.name: getattr(options, f.name) for f in fields(options)}
+    said = {name: v for name, v in said.items() if v != getattr(AS_WRITTEN, name)}
+    written = (
+        f"{name} = {shown(list(v) if isinstance(v, tuple) else v)}" for name, v in said.items()
+    )
+    return ", ".join(written)
 
 
 def _phases(file: TomlFile, tables: StudyTables) -> tuple[Phase, ...]:

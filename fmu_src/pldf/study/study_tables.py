@@ -22,6 +22,10 @@ LIMIT_MAX_MPS: Final = 300.0 / KMH_PER_MPS
 
 PhaseName = Literal["A1", "A2", "A3", "B1", "B2", "B3"]
 Text = Annotated[str, Meta(pattern=r"\S", description="a text in quotes")]
+RoadId = Annotated[str | int, Meta(description='the id of a road, such as 12 or "Main Street"')]
+Via = Annotated[
+    tuple[str | int, ...], Meta(description="a list of the ids of roads, such as [12, 45, 7]")
+]
 Count = Annotated[
     int, Meta(ge=1, le=COUNT_MAX, description=f"a whole number from 1 to {COUNT_MAX}")
 ]
@@ -69,9 +73,9 @@ class RoadTable(Struct, forbid_unknown_fields=True, frozen=True):
     """``[road]``."""
 
     route: Text = "study"
-    start_road: Text | None = None
-    via: tuple[Text, ...] = ()
-    to: Text | None = None
+    start_road: RoadId | None = None
+    via: Via = ()
+    to: RoadId | None = None
     reverse: bool = False
     default_limit_mps: Limit | None = None
     limit_unit: LimitUnit | None = None
