@@ -53,7 +53,7 @@ EVERYTHING = Panel(
             "Boxes",
         ),
         Note(1.0, 4.0, "above"),
-        Note(1.0, 3.0, "below", above=False, boxed=True),
+        Note(1.0, 3.0, "below", "below", boxed=True),
     ),
     Axis("Distance", "km", low=0.0, high=2.0),
     Axis("Height", "m", "over all", low=10.0, high=-1.0, ticks=(Tick(2.0, "two", "#D55E00"),)),
@@ -236,7 +236,7 @@ def test_figures_for_papers_are_the_same_bytes_every_time(
 ) -> None:
     for folder in ("one", "two"):
         for name, scene in study_figures(contents).items():
-            paper.save(scene, tmp_path / folder / f"{name}.svg")
+            paper.save(tmp_path / folder / f"{name}.svg", scene)
     for name in FIGURES:
         one, two = (tmp_path / folder / f"{name}.svg" for folder in ("one", "two"))
         assert one.read_bytes() == two.read_bytes()
@@ -244,7 +244,7 @@ def test_figures_for_papers_are_the_same_bytes_every_time(
 
 def test_an_unknown_ending_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match=r"a\.doc: cannot be drawn .*use \.png, \.pdf or \.svg"):
-        paper.save(SCENE, tmp_path / "a.doc")
+        paper.save(tmp_path / "a.doc", SCENE)
 
 
 def test_the_command_writes_figures_as_pdf(folder: Path, tmp_path: Path) -> None:

@@ -118,7 +118,7 @@ def _show(
         figures = study_figures(contents)
         paths = [options.figures / f"{name}.{options.format}" for name in figures]
         for path, figure in zip(paths, figures.values(), strict=True):
-            save(figure, path)
+            save(path, figure)
         print(f"Figures: {', '.join(path.name for path in paths)} in {options.figures}.")
 
 

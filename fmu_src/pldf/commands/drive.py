@@ -147,7 +147,7 @@ def _plot(path: Path, done: Drive, name: str) -> None:
 
     rates = done.outputs
     title = f"{name}: interventions in {100 * rates['rate.combined']:.0f} % of the time"
-    save(one_drive(done.recording, title), path)
+    save(path, one_drive(done.recording, title))
     print(f"picture    {path}")
 
 

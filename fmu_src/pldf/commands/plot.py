@@ -64,7 +64,7 @@ def run(options: argparse.Namespace) -> None:
     shares = [f"{name} {_share(recording)}" for name, recording in named.items()]
     title = f"Share of the time with interventions: {', '.join(shares)}"
     out = options.out or options.recordings[0].with_suffix(".png")
-    save(recorded(named, title, profile), out)
+    save(out, recorded(named, title, profile))
     print(f"picture  {out}")
 
 

@@ -65,7 +65,8 @@ def run(options: argparse.Namespace) -> None:
 
         if not options.plot.parent.is_dir():  # most likely a slip of the pen
             raise ModelError(f"{options.plot}: there is no folder {options.plot.parent}")
-        paper.save(figures.route(facts), options.plot)
+        plan = figures.plan(facts)
+        paper.save(options.plot, *filter(None, (plan, figures.route(facts))))
         print(f"drawn        {options.plot}")
     print("\n".join(listed(route.notes)))
 

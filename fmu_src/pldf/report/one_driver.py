@@ -55,7 +55,7 @@ def draw_one_driver(study: Study, out: Path) -> list[Path]:
             "What the function has learned after each drive",
         )
     for name, figure in drawn.items():
-        save(figure, out / name)
+        save(out / name, figure)
     return [out / name for name in drawn]
 
 

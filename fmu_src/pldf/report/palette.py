@@ -51,6 +51,20 @@ _SERIES: Final[tuple[tuple[str, Dash, Mark], ...]] = (
 )
 
 
+# Legal limits in order, light and wide for fast: a part of matplotlib's viridis, which keeps apart
+# and in order for every kind of colour vision and in print.
+_LIMITS: Final = (
+    "#440154", "#472F7D", "#39568C", "#287C8E", "#1FA187", "#4AC16D", "#93D741",
+)  # fmt: skip
+LIMITS_MAX: Final = len(_LIMITS)
+
+
+def limit(number: int, count: int) -> Stroke:
+    """Return the stroke of limit ``number`` (from 0, the slowest) of ``count``."""
+    share = number / (count - 1) if count > 1 else 0.5
+    return Stroke(_LIMITS[round(share * (LIMITS_MAX - 1))], 2.2 + 2.6 * share)
+
+
 def series(number: int) -> Stroke:
     """Return the stroke of the series with this number, from 0, its points marked."""
     colour, dash, mark = _SERIES[number % len(_SERIES)]

@@ -8,7 +8,7 @@ from typing import Any, Final, Literal
 
 from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
@@ -25,6 +25,8 @@ _DASHES: Final[dict[str, Any]] = {
     "solid": "-", "dash": (0, (4, 2)), "dot": (0, (1, 1.2)), "dashdot": (0, (5, 1.5, 1, 1.5)),
 }  # fmt: skip
 _MARKS: Final = {"": "", "circle": "o", "square": "s", "triangle": "^", "diamond": "D"}
+_ALIGNED: Final = {"above": "bottom", "middle": "center", "below": "top"}
+_SHIFTS_PT: Final = {"above": 4, "middle": 0, "below": -4}
 # What matplotlib would write of version and time of day.
 _PINNED: Final[dict[str, dict[str, str | None]]] = {
     ".png": {"Software": "pldf"},
@@ -33,8 +35,8 @@ _PINNED: Final[dict[str, dict[str, str | None]]] = {
 }
 
 
-def save(scene: Scene, path: Path) -> None:
-    """Draw ``scene`` into ``path`` (PNG, PDF or SVG by its ending): same scene, same bytes.
+def save(path: Path, *scenes: Scene) -> None:
+    """Draw ``scenes`` below each other into ``path`` (PNG, PDF or SVG): same scenes, same bytes.
 
     Raises:
         ModelError: the ending is unknown or the file cannot be written.
@@ -43,20 +45,34 @@ def save(scene: Scene, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         with rc_context({"svg.hashsalt": "pldf"}):
             metadata = _PINNED.get(path.suffix.lower())
-            drawn(scene).savefig(path, dpi=DOTS_PER_INCH, metadata=metadata)
+            drawn(*scenes).savefig(path, dpi=DOTS_PER_INCH, metadata=metadata)
     except (OSError, ValueError) as error:
         raise ModelError(f"{path}: cannot be drawn ({error}); use .png, .pdf or .svg") from error
 
 
-def drawn(scene: Scene) -> Figure:
-    """Return ``scene`` as a figure of matplotlib."""
+def drawn(*scenes: Scene) -> Figure:
+    """Return ``scenes``, one below the other, as a figure of matplotlib."""
+    heights = [_AROUND_IN + sum(scene.heights_in) for scene in scenes]
+    width = max(scene.width_in for scene in scenes)
+    figure = Figure(figsize=(width, sum(heights)), layout="constrained")
+    if len(scenes) == 1:
+        _draw(figure, scenes[0])
+    else:
+        parts = figure.subfigures(len(scenes), squeeze=False, height_ratios=heights)
+        for part, scene in zip(parts[:, 0], scenes, strict=True):
+            _draw(part, scene)
+    return figure
+
+
+def _draw(figure: FigureBase, scene: Scene) -> None:
     heights = scene.heights_in
-    figure = Figure(figsize=(scene.width_in, _AROUND_IN + sum(heights)), layout="constrained")
     axes = figure.subplots(
         len(heights), scene.columns, sharex=True, squeeze=False, height_ratios=heights
     )
     for number, (axes_here, panel) in enumerate(zip(axes.flat, scene.panels, strict=True)):
         _draw_panel(axes_here, panel)
+        if scene.to_scale:
+            axes_here.set_aspect("equal")
         if scene.at_foot(number):
             axes_here.set_xlabel(panel.x.title)
         if scene.repeats_y(number):
@@ -68,7 +84,6 @@ def drawn(scene: Scene) -> Figure:
     _add_legend(figure, scene)
     if scene.title:
         figure.suptitle(scene.title, x=0.01, ha="left", fontsize=13)
-    return figure
 
 
 def _draw_panel(axes: Axes, panel: Panel) -> None:
@@ -104,8 +119,8 @@ def _draw_line(axes: Axes, line: Line) -> None:
 def _draw_note(axes: Axes, note: Note) -> None:
     box = {"boxstyle": "round,pad=0.15", "facecolor": "white", "linewidth": 0}
     axes.annotate(
-        note.text, (note.x, note.y), xytext=(0, 4 if note.above else -4),
-        textcoords="offset points", ha="center", va="bottom" if note.above else "top", fontsize=8,
+        note.text, (note.x, note.y), xytext=(0, _SHIFTS_PT[note.place]),
+        textcoords="offset points", ha="center", va=_ALIGNED[note.place], fontsize=8,
         bbox=box if note.boxed else None,
     )  # fmt: skip
 
@@ -136,7 +151,7 @@ def _area(fill: Fill) -> dict[str, Any]:
     return style
 
 
-def _add_legend(figure: Figure, scene: Scene) -> None:
+def _add_legend(figure: FigureBase, scene: Scene) -> None:
     """Put one legend for all panels below them."""
     handles: dict[str, Line2D | Patch] = {}
     for panel in scene.panels:

@@ -14,6 +14,7 @@ from ..kernel.arrays import FloatArray
 
 Dash = Literal["solid", "dash", "dot", "dashdot"]
 Mark = Literal["", "circle", "square", "triangle", "diamond"]
+Place = Literal["above", "middle", "below"]
 
 
 @dataclass(frozen=True)
@@ -101,12 +102,12 @@ class Boxes:
 
 @dataclass(frozen=True)
 class Note:
-    """A short text above (or below) a point; ``boxed``: on white, so that nothing hides it."""
+    """A short text at a point; ``boxed``: on white, so that nothing hides it."""
 
     x: float
     y: float
     text: str
-    above: bool = True
+    place: Place = "above"
     boxed: bool = False
 
 
@@ -176,6 +177,7 @@ class Scene:
         columns: panels beside each other.
         width_in: on paper; the page gives all its width.
         stages: labels that the page can show one after the other, each with those before it.
+        to_scale: a map: a unit of x is as long as one of y.
     """
 
     panels: tuple[Panel, ...]
@@ -183,6 +185,7 @@ class Scene:
     columns: int = 1
     width_in: float = 11.0
     stages: tuple[str, ...] = ()
+    to_scale: bool = False
 
     @property
     def heights_in(self) -> tuple[float, ...]:

@@ -23,6 +23,8 @@ _CONFIG: Final = {
     "responsive": True,
     "modeBarButtonsToRemove": ["select2d", "lasso2d", "autoScale2d"],
 }
+_ANCHORS: Final = {"above": "bottom", "middle": "middle", "below": "top"}
+_SHIFTS_PX: Final = {"above": 3, "middle": 0, "below": -3}
 _NO_HOVER: Final = {"hoverinfo": "skip"}
 
 
@@ -153,7 +155,7 @@ def _area(x: FloatArray, y: FloatArray, element: Band | Boxes) -> dict[str, Any]
 def _note(note: Note) -> dict[str, Any]:
     return {
         "x": note.x, "y": note.y, "text": _text(note.text), "showarrow": False,
-        "yanchor": "bottom" if note.above else "top", "yshift": 3 if note.above else -3,
+        "yanchor": _ANCHORS[note.place], "yshift": _SHIFTS_PX[note.place],
         "font": {"size": 11}, "bgcolor": "white" if note.boxed else "rgba(0,0,0,0)",
     }  # fmt: skip
 
@@ -184,11 +186,14 @@ def _style(figure: Any, scene: Scene, panels_px: float) -> None:
         plot_bgcolor="#fff",
         font={"family": "Helvetica, Arial, sans-serif", "size": 14, "color": "#222"},
         margin={"l": 74, "r": 16, "t": _TOP_PX, "b": below},
-        hovermode="closest" if categories else "x unified",
+        hovermode="closest" if categories or scene.to_scale else "x unified",
         legend={"orientation": "h", "x": 0, "yref": "container", "y": 0, "yanchor": "bottom"},
         hoverlabel={"bgcolor": "#fff", "font": {"size": 13}},
     )  # fmt: skip
-    figure.update_yaxes(fixedrange=True)
+    figure.update_yaxes(fixedrange=not scene.to_scale)
+    if scene.to_scale:
+        figure.update_yaxes(scaleanchor="x", constrain="domain")
+        figure.update_xaxes(constrain="domain")
     figure.update_xaxes(fixedrange=categories, hoverformat=".3f" if scene.panels[0].x.unit else "")
 
 

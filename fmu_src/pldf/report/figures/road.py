@@ -77,5 +77,5 @@ def _curvature(facts: RouteFacts) -> tuple[Element, ...]:
         middle = 0.5 * (curve.start_m + curve.end_m) * KM
         to_left = float(np.interp(middle, s_km, per_km)) > 0.0
         peak = (1.0 if to_left else -1.0) * 1e3 / curve.radius_m
-        notes.append(Note(middle, peak, f"{curve.radius_m:.0f} m", above=to_left))
+        notes.append(Note(middle, peak, f"{curve.radius_m:.0f} m", "above" if to_left else "below"))
     return band, line, *notes
