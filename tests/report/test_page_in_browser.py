@@ -17,7 +17,7 @@ from selenium.webdriver.common.actions.action_builder import ActionBuilder
 from selenium.webdriver.common.by import By
 
 REQUEST = "Network.requestWillBeSent"
-FIGURES = ("rates", "compared", "drives", "development", "steps", "long_run", "base")
+FIGURES = ("rates", "compared", "drives", "development", "steps", "long_run", "plan", "base")
 BROWSER_FLAGS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-component-update",
     "--disable-background-networking", "--disable-sync", "--disable-dev-shm-usage",

@@ -35,7 +35,7 @@ from pldf.report.scene import (
 )
 from sample_recording import sample_recording
 
-FIGURES = ("rates", "compared", "drives", "development", "steps", "long_run", "base")
+FIGURES = ("rates", "compared", "drives", "development", "steps", "long_run", "plan", "base")
 
 ONE, TWO = np.array([0.0, 1.0, 2.0]), np.array([3.0, np.nan, 5.0])
 EVERYTHING = Panel(
@@ -252,5 +252,5 @@ def test_the_command_writes_figures_as_pdf(folder: Path, tmp_path: Path) -> None
     figures = tmp_path / "figures"
     command = ["analyse", str(tmp_path), "--figures", str(figures), "--format", "pdf"]
     assert main(command) == 0
-    assert {path.name for path in figures.iterdir()} == {"base.pdf", "rates.pdf"}
+    assert {path.name for path in figures.iterdir()} == {"base.pdf", "plan.pdf", "rates.pdf"}
     assert (figures / "rates.pdf").read_bytes().startswith(b"%PDF")

@@ -37,8 +37,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="show the roads of the file and the ways on from each, instead of one way",
     )  # fmt: skip
     parser.add_argument(
-        "--plot", metavar="PNG", type=_picture, help="draw limits, curvature and base profile"
-    )
+        "--plot", metavar="PNG", type=_picture,
+        help="draw a plan view, limits, curvature and base profile (.png, .pdf or .svg)",
+    )  # fmt: skip
     parser.add_argument(
         "--export",
         metavar="OUT.csv",
@@ -67,7 +68,8 @@ def run(options: argparse.Namespace) -> None:
             raise ModelError(f"{options.plot}: there is no folder {options.plot.parent}")
         plan = figures.plan(facts)
         paper.save(options.plot, *filter(None, (plan, figures.route(facts))))
-        print(f"drawn        {options.plot}")
+        without = "" if plan else " (without a plan view: the file has no x and y)"
+        print(f"drawn        {options.plot}{without}")
     print("\n".join(listed(route.notes)))
 
 

@@ -82,6 +82,12 @@ _FIGURES: Final = {
         "factors. The error is what remains between the profile and the drivers' hidden wish, "
         "which no study with people can measure.",
     ),
+    "plan": (
+        "The road from above",
+        "Where the road runs, to scale, with its legal limits in colours, the faster the wider. "
+        "Shaded: curves that bind, with their smallest radius and the speed that they allow. Drag "
+        "a rectangle to zoom, double click to go back.",
+    ),
     "base": (
         "The road and its base profile",
         "Legal limits, the speed that the curves allow, and the base profile planned from both "
@@ -202,7 +208,7 @@ def _sections(contents: Contents) -> list[Section]:
     words = _words(contents)
     for name, scene in study_figures(contents).items():
         title, caption = (text.format(**words) for text in _FIGURES[name])
-        caption += _not_known(contents, name)
+        caption += _not_known(contents, name) + _no_plan(contents, name)
         below = _BELOW.get(name, "")
         sections.append(Section(name, title, Markup(html_of(scene, name)), caption, below))
     if contents.driver is None:
@@ -224,6 +230,13 @@ def _not_known(contents: Contents, figure: str) -> str:
         f" Not known, so left out: the profile followed in {_listed(driver.not_known)}. It was not "
         "recorded (profile_mps), and there is no learned profile to take it from (--profiles)."
     )
+
+
+def _no_plan(contents: Contents, figure: str) -> str:
+    """Return why there is no plan view, to stand behind the caption of the road's other figure."""
+    if figure != "base" or contents.route.route.has_line:
+        return ""
+    return " The road's file has no x and y, so there is no plan view."
 
 
 def _words(contents: Contents) -> dict[str, Any]:

@@ -61,6 +61,8 @@ def drawn(*scenes: Scene) -> Figure:
         parts = figure.subfigures(len(scenes), squeeze=False, height_ratios=heights)
         for part, scene in zip(parts[:, 0], scenes, strict=True):
             _draw(part, scene)
+    if any(scene.to_scale for scene in scenes):
+        figure.draw_without_rendering()  # the layout needs to have seen a map in its shape
     return figure
 
 
@@ -72,7 +74,7 @@ def _draw(figure: FigureBase, scene: Scene) -> None:
     for number, (axes_here, panel) in enumerate(zip(axes.flat, scene.panels, strict=True)):
         _draw_panel(axes_here, panel)
         if scene.to_scale:
-            axes_here.set_aspect("equal")
+            axes_here.set_aspect("equal", anchor="S")
         if scene.at_foot(number):
             axes_here.set_xlabel(panel.x.title)
         if scene.repeats_y(number):

@@ -89,4 +89,5 @@ def _locator(stretches: list[Stretch], starts_m: list[float]) -> Locate:
 def _named(leg: Leg) -> str:
     """Return a road's id, and its name if it has another."""
     name = leg.road.attributes.get("name", "").strip()
-    return f"{leg.id} {name}" if name not in ("", leg.id) else leg.id
+    same = ("", leg.id, f"Road {leg.id}")  # some programs name every road so
+    return leg.id if name in same else f"{leg.id} {name}"

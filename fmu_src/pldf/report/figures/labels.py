@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,20 @@ _AWAY_IN: Final = (0.1, 0.22, 0.4)  # of a text from the line, the nearest first
 _DIRECTIONS: Final = 8  # in which a text may stand
 
 
+class Rectangle(NamedTuple):
+    """A part of a map."""
+
+    left: float
+    right: float
+    foot: float
+    top: float
+
+    def meets(self, other: Rectangle) -> bool:
+        """Return whether the two have a part in common."""
+        across = self.left < other.right and other.left < self.right
+        return across and self.foot < other.top and other.foot < self.top
+
+
 class Labels:
     """Texts set one after the other, each where nothing is yet.
 
@@ -24,17 +38,18 @@ class Labels:
         notes: those that found room.
     """
 
-    def __init__(self, x: FloatArray, y: FloatArray, per_in: float) -> None:
+    def __init__(self, x: FloatArray, y: FloatArray, per_in: float, within: Rectangle) -> None:
         """Begin with a map.
 
         Args:
             x: of the points that no text may hide.
             y: of the same.
             per_in: length on the map of an inch on paper.
+            within: where texts may stand.
         """
         self.notes: list[Note] = []
-        self._x, self._y, self._per_in = x, y, per_in
-        self._taken: list[tuple[float, float, float, float]] = []
+        self._x, self._y, self._per_in, self._within = x, y, per_in, within
+        self._taken: list[Rectangle] = []
 
     def add(self, x: float, y: float, text: str) -> bool:
         """Set ``text`` near a point; return whether there was room."""
@@ -47,7 +62,7 @@ class Labels:
                 east, north = float(np.cos(angle)), float(np.sin(angle))
                 middle_x = x + east * (half_width + away_in * self._per_in)
                 middle_y = y + north * (half_height + away_in * self._per_in)
-                box = (
+                box = Rectangle(
                     middle_x - half_width, middle_x + half_width,
                     middle_y - half_height, middle_y + half_height,
                 )  # fmt: skip
@@ -57,16 +72,11 @@ class Labels:
                     return True
         return False
 
-    def keep_free(self, box: tuple[float, float, float, float]) -> None:
-        """Let no text into the box from x to x and from y to y."""
-        self._taken.append(box)
-
-    def _is_free(self, box: tuple[float, float, float, float]) -> bool:
-        left, right, foot, top = box
-        if any(
-            left < other[1] and other[0] < right and foot < other[3] and other[2] < top
-            for other in self._taken
-        ):
+    def _is_free(self, box: Rectangle) -> bool:
+        left, right, foot, top = self._within
+        if box.left < left or box.right > right or box.foot < foot or box.top > top:
             return False
-        across = (self._x > left) & (self._x < right) & (self._y > foot) & (self._y < top)
-        return not np.any(across)
+        if any(box.meets(other) for other in self._taken):
+            return False
+        beside = (self._x < box.left) | (self._x > box.right)
+        return bool(np.all(beside | (self._y < box.foot) | (self._y > box.top)))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from math import dist
 from typing import Final
 
 import numpy as np
@@ -16,7 +17,7 @@ from ...roads.route import Mark
 from ...route_facts import BINDING_MPS, RouteFacts
 from .. import palette
 from ..scene import Axis, Element, Line, Note, Panel, Scene, Stroke
-from .labels import Labels
+from .labels import Labels, Rectangle
 
 _WIDTH_IN: Final = 10.0  # of the map on paper, without its axis
 _HEIGHTS_IN: Final = (2.0, 6.0)  # least and most, of the route alone
@@ -25,6 +26,8 @@ _FOOT_IN: Final = 0.45  # below it, for scale and north
 _POINTS: Final = 4000  # along the route: more does not show
 _CLASSES_KMH: Final = (30.0, 50.0, 70.0, 90.0, 110.0, 130.0)  # of many limits
 _ARROWS: Final = 7
+_AROUND_IN: Final = 0.07  # over which the direction is taken
+_APART_IN: Final = 0.12  # of marks, at least
 _TEXTS_MAX: Final = 60  # of a kind for which room is looked for
 _KM_FROM_M: Final = 20e3  # from this extent on the axes are in km
 
@@ -60,9 +63,13 @@ class _Map:
         return float(np.interp(s_m, self.s_m, self.x)), float(np.interp(s_m, self.s_m, self.y))
 
     def heading(self, s_m: float) -> tuple[float, float]:
-        """Return the direction of driving there, as a unit vector."""
-        after = int(np.clip(np.searchsorted(self.s_m, s_m, "right"), 1, len(self.s_m) - 1))
-        east, north = (float(v[after] - v[after - 1]) for v in (self.x, self.y))
+        """Return the direction of driving around there, as a unit vector."""
+        around = np.hypot(self.x - self.at(s_m)[0], self.y - self.at(s_m)[1])
+        here = int(np.searchsorted(self.s_m, s_m))
+        far = around > _AROUND_IN * self.per_in
+        before = int(np.flatnonzero(far[:here])[-1]) if np.any(far[:here]) else 0
+        after = here + int(np.argmax(far[here:])) if np.any(far[here:]) else len(self.s_m) - 1
+        east, north = (float(v[after] - v[before]) for v in (self.x, self.y))
         length = float(np.hypot(east, north)) or 1.0
         return east / length, north / length
 
@@ -73,7 +80,8 @@ def plan(facts: RouteFacts) -> Scene | None:
         return None
     shown, x, y = _map(facts)
     lines = (*_limits(shown), *_curves(shown), *_places(shown), *_arrows(shown))
-    elements = (*lines, *_scale_and_north(shown, x, y), *_texts(shown))
+    inside = Rectangle(*x.ends, y.ends[0] + _FOOT_IN * shown.per_in, y.ends[1])
+    elements = (*lines, *_scale_and_north(shown, x, y), *_texts(shown, inside))
     height_in = (y.ends[1] - y.ends[0]) / shown.per_in
     title = f"{facts.route.name}: plan view"
     return Scene((Panel(elements, x, y, height_in, title),), to_scale=True)
@@ -170,14 +178,24 @@ def _places(shown: _Map) -> Iterator[Line]:
     signs |= {mark.s_m: mark.name for mark in route.marks if mark.kind == "sign"}
     roads = {mark.s_m: f"road {mark.name}" for mark in _roads(route)}
     for marks, stroke, label in ((roads, _ROAD, "Road begins"), (signs, _SIGN, "Sign")):
-        if marks:
-            x, y = zip(*(shown.at(s) for s in marks), strict=True)
-            hover = tuple(f"{s:.0f} m: {name}" for s, name in marks.items())
-            yield Line(np.array(x), np.array(y), stroke, label, hover=hover, raised=True)
+        apart = _apart(shown, sorted(marks))
+        if apart:
+            x, y = (np.array(values) for values in zip(*map(shown.at, apart), strict=True))
+            hover = tuple(f"{s:.0f} m: {marks[s]}" for s in apart)
+            yield Line(x, y, stroke, label, hover=hover, raised=True)
     for s_m, stroke, label in ((0.0, _START, "Start"), (route.length_m, _END, "End")):
         at_x, at_y = (np.array([value]) for value in shown.at(s_m))
         hover = (f"{label}, {s_m:.0f} m",)
         yield Line(at_x, at_y, stroke, label, listed=False, hover=hover, raised=True)
+
+
+def _apart(shown: _Map, places_m: Iterable[float]) -> list[float]:
+    """Return those places that can be told apart on the map."""
+    apart: list[float] = []
+    for s_m in places_m:
+        if not apart or dist(shown.at(apart[-1]), shown.at(s_m)) > _APART_IN * shown.per_in:
+            apart.append(s_m)
+    return apart
 
 
 def _arrows(shown: _Map) -> Iterator[Line]:
@@ -213,17 +231,17 @@ def _scale_and_north(shown: _Map, x: Axis, y: Axis) -> Iterator[Element]:
     yield Note(at, tip, "N")
 
 
-def _texts(shown: _Map) -> list[Note]:
+def _texts(shown: _Map, inside: Rectangle) -> list[Note]:
     """Return as many texts as there is room for, the most needed first."""
-    facts, labels = shown.facts, Labels(shown.x, shown.y, shown.per_in)
-    closed = np.hypot(*np.subtract(shown.at(0.0), shown.at(facts.route.length_m)))
-    if closed < 0.2 * shown.per_in:
+    facts, labels = shown.facts, Labels(shown.x, shown.y, shown.per_in, inside)
+    if dist(shown.at(0.0), shown.at(facts.route.length_m)) < _APART_IN * shown.per_in:
         labels.add(*shown.at(0.0), "start and end")
     else:
         labels.add(*shown.at(0.0), "start")
         labels.add(*shown.at(facts.route.length_m), "end")
-    for s_m, limit in _spread(facts.limits):
-        labels.add(*shown.at(s_m), f"{limit * KMH_PER_MPS:.3g}")
+    limits = dict(facts.limits)
+    for s_m in _apart(shown, limits):
+        labels.add(*shown.at(s_m), f"{limits[s_m] * KMH_PER_MPS:.3g}")
     for curve in sorted(facts.curves, key=lambda curve: curve.speed_mps)[:_TEXTS_MAX]:
         middle = 0.5 * (curve.start_m + curve.end_m)
         speed_kmh = curve.speed_mps * KMH_PER_MPS
@@ -231,11 +249,6 @@ def _texts(shown: _Map) -> list[Note]:
     for s_m, name in _longest_roads(facts.route):
         labels.add(*shown.at(s_m), name)
     return labels.notes
-
-
-def _spread(limits: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
-    """Return of many limits so many, evenly."""
-    return limits[:: 1 + len(limits) // _TEXTS_MAX]
 
 
 def _roads(route: Route) -> list[Mark]:

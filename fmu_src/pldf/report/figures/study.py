@@ -7,6 +7,7 @@ from ..contents import Contents, DriverShown
 from ..scene import Scene
 from .driving import compared, drives
 from .learning import development, long_run, steps
+from .plan import plan
 from .quality import quality
 from .road import route
 from .shares import rates
@@ -19,6 +20,8 @@ def study_figures(contents: Contents) -> dict[str, Scene]:
         figures |= _of_driver(contents.driver)
     if contents.long_run:
         figures["long_run"] = long_run(contents.long_run)
+    if from_above := plan(contents.route):
+        figures["plan"] = from_above
     figures["base"] = route(contents.route)
     if contents.checks.drives:
         figures["quality"] = quality(contents.checks)
