@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -236,6 +237,35 @@ def test_both_ends_of_a_road_at_one_junction(driven: Driven, stated: bool) -> No
     assert driven(made, start_road="l") == ["l", "ln", "n"]
 
 
+def test_a_ring_whose_ends_lie_at_one_place(driven: Driven) -> None:
+    """Only the links say which connecting road leaves from which end."""
+    made = Map()
+    made.road("r", (0.0, 0.0), (60.0, 0.0), rear="junction J", front="junction J", lanes=BOTH)
+    made.roads[0] = made.roads[0].replace("<line/>", f'<arc curvature="{math.tau / 60.0!r}"/>')
+    made.road("e", (20.0, 0.0), (90.0, 0.0), rear="junction J")
+    made.road("s", (10.0, -20.0), (10.0, -90.0), rear="junction J")
+    made.road("re", (0.0, 0.0), (20.0, 0.0), rear="r end", front="e start", junction="J")
+    made.road("rs", (0.0, 0.0), (10.0, -20.0), rear="r start", front="s start", junction="J")
+    made.connect("J", "r", "re").connect("J", "r", "rs")
+    assert driven(made, start_road="r") == ["r", "re", "e"]
+    assert driven(made, start_road="r", reverse=True) == ["-r", "rs", "s"]
+
+
+def test_a_way_ends_before_it_turns_back(driven: Driven) -> None:
+    back = Map().road("w", (0.0, 0.0), (100.0, 0.0), front="junction J", lanes=BOTH)
+    back.road("u", (100.0, 0.0), (100.0, 5.0), rear="w end", front="w end", junction="J")
+    back.connect("J", "w", "u")
+    assert driven(back, start_road="w") == ["w", "u"]
+
+
+def test_a_way_that_was_driven_is_named_by_what_leads_there(driven: Driven) -> None:
+    """Naming the road itself would be taken for where it was passed before."""
+    town = crossing().connect("J", "w", "u")
+    town.road("u", (-10.0, 0.0), (-10.0, 5.0), rear="w end", front="w end", junction="J")
+    with pytest.raises(ModelError, match=r"road w \(left.*--via s \(or e, n, u\)"):
+        driven(town, start_road="w")
+
+
 def test_several_connecting_roads_to_one_road_are_no_choice(
     driven: Driven, told: list[str]
 ) -> None:
@@ -280,6 +310,12 @@ def test_direct_junctions_lead_both_ways(driven: Driven) -> None:
         driven(made, start_road="1")
     assert driven(made, start_road="1", to="3") == ["1", "3"]
     assert driven(made, start_road="2", reverse=True) == ["-2", "-1"]
+    ring = Map().road("1", (0.0, 0.0), (100.0, 0.0), front="junction J", lanes=BOTH)
+    ring.road("2", (100.0, 0.0), (103.0, 0.0), rear="junction J", front="junction J", lanes=BOTH)
+    ring.kinds["J"] = 'type="direct"'
+    ring.connect("J", "1", "2", "start", "linkedRoad")
+    assert driven(ring, start_road="1") == ["1", "2"]
+    assert driven(ring, start_road="2") == ["2"]
 
 
 def test_a_main_road_passes_a_virtual_junction_as_it_is(driven: Driven, told: list[str]) -> None:
