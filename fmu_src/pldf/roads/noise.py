@@ -8,7 +8,8 @@ for 0.004/m between points 10 m apart, 2 m for an S-bend of 20 m radius. ``SWING
 It is smoothed by the mean over a window around each place. How long, is found by the intersection
 of confidence intervals (A. Goldenshluger, A. Nemirovski, *On spatially adaptive estimation of
 nonparametric regression*, 1997): the longest window whose mean fits those of all shorter ones,
-given the noise, which is estimated from second differences. So straights are averaged over hundreds
+given the noise, which is estimated from second differences. Of these the last but one is taken:
+the longest already levels bends by what the noise allows. So straights are averaged over hundreds
 of metres, and bends keep their shape.
 """
 
@@ -210,11 +211,11 @@ def _sigma(samples: FloatArray) -> float:
 
 
 def _adaptive_means(samples: FloatArray, sigma: float) -> FloatArray:
-    """Return of each sample the mean over the longest window that fits all shorter ones."""
+    """Return of each sample the mean over the last but one window that fits all shorter ones."""
     total = np.concatenate(([0.0], np.cumsum(samples)))
     index = np.arange(len(samples))
     low, high = np.full(len(samples), -np.inf), np.full(len(samples), np.inf)
-    best = samples.copy()
+    longest, taken = samples, samples
     fits = np.ones(len(samples), dtype=bool)
     for half in _WINDOWS:
         reach = np.minimum(half, np.minimum(index, len(samples) - 1 - index))
@@ -223,8 +224,9 @@ def _adaptive_means(samples: FloatArray, sigma: float) -> FloatArray:
         margin = _CONFIDENCE * sigma / np.sqrt(count)
         low, high = np.maximum(low, mean - margin), np.minimum(high, mean + margin)
         fits &= low <= high
-        best = np.where(fits, mean, best)
-    return best
+        taken = np.where(fits, longest, taken)
+        longest = np.where(fits, mean, longest)
+    return taken
 
 
 def _first_of_each(found: list[Noise]) -> list[Noise]:
