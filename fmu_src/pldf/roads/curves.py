@@ -8,6 +8,7 @@ a route that was exported is read as it was written.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable
 from typing import Final
 
@@ -17,7 +18,7 @@ from ..findings import Finding, Severity
 from ..kernel.arrays import FloatArray
 from ..kernel.units import KMH_PER_MPS
 from .bending import CURVATURE, LIMIT, S, averaged, spans_of
-from .kinks import CAR_LENGTH_M, Turn, corners, with_boxes
+from .kinks import CAR_LENGTH_M, SPREAD_MAX_M, Turn, corners, with_boxes
 from .noise import Noise, smoothed
 from .sampling import Joints
 from .spikes import Spike, rounded_spikes
@@ -48,8 +49,9 @@ def judged(
     knots, noises = smoothed(with_boxes(knots, boxes), smoothing_m, felt)
     knots = averaged(knots, spans_of(boxes.start_m, boxes.end_m), CAR_LENGTH_M)
     knots, spikes = rounded_spikes(knots, felt)
-    noises = [n for n in noises if not any(t.holds(n.start_m) and t.holds(n.end_m) for t in turns)]
-    spikes = [spike for spike in spikes if not any(turn.holds(spike.start_m) for turn in turns)]
+    # What the rounding of corners leaves is told with the corners.
+    noises = [n for n in noises if not (_rounded(n.start_m, turns) and _rounded(n.end_m, turns))]
+    spikes = [spike for spike in spikes if not _rounded(spike.start_m, turns)]
 
     def finding(at_m: float, text: str, severity: Severity, way_out: str = "") -> Finding:
         line, place = locate(at_m)
@@ -59,6 +61,12 @@ def judged(
     told += [finding(noise.start_m, *_noise(noise, smoothing_m)) for noise in noises]
     told += [finding(spike.start_m, *_spike(spike, knots)) for spike in spikes]
     return knots, told
+
+
+def _rounded(at_m: float, turns: list[Turn]) -> bool:
+    """Tell whether corners were rounded at this place."""
+    k = bisect_right(turns, at_m + SPREAD_MAX_M, key=lambda turn: turn.first_m)
+    return k > 0 and at_m <= turns[k - 1].last_m + SPREAD_MAX_M
 
 
 def _felt_per_m(knots: FloatArray) -> float:

@@ -44,10 +44,6 @@ class Turn:
     turn_rad: float
     line: int
 
-    def holds(self, at_m: float) -> bool:
-        """Tell whether a place on the route is where these corners are rounded."""
-        return self.first_m - SPREAD_MAX_M <= at_m <= self.last_m + SPREAD_MAX_M
-
 
 def corners(joints: Joints, felt_per_m: float) -> tuple[Boxes, list[Turn]]:
     """Return the curves that a car drives around corners of the line, and the corners in groups.

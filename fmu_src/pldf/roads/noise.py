@@ -71,9 +71,8 @@ def smoothed(
         spans = noisy_spans(knots, felt_per_m)
         if not spans:
             break
-        for span in spans:
-            knots, noise = _denoised(knots, span)
-            found.append(noise)
+        knots, noises = _denoised(knots, spans)
+        found += noises
     return knots, _first_of_each(found)
 
 
@@ -101,7 +100,8 @@ def noisy_spans(knots: FloatArray, felt_per_m: float) -> list[tuple[float, float
 
 def _rough(knots: FloatArray, span_m: tuple[float, float], swing_per_m: float) -> bool:
     """Tell whether the curvature jumps about from sample to sample, rather than swing smoothly."""
-    _, samples = _samples(knots, span_m, _spacing(knots, span_m))
+    part = _part(knots, *span_m)
+    _, samples = _samples(part, span_m, _spacing(part, span_m))
     return _sigma(samples) > _ROUGH * swing_per_m
 
 
@@ -140,36 +140,48 @@ def _runs(flags: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
     return np.split(index, np.flatnonzero(np.diff(index) > 1) + 1) if len(index) else []
 
 
-def _denoised(knots: FloatArray, span_m: tuple[float, float]) -> tuple[FloatArray, Noise]:
-    """Replace the curvature between ``span_m`` by its adaptive means."""
-    spacing = _spacing(knots, span_m)
-    reach = _WINDOWS[-1] * spacing
-    middle, samples = _samples(knots, (span_m[0] - reach, span_m[1] + reach), spacing)
-    inside = (middle >= span_m[0]) & (middle <= span_m[1])
-    sigma = _sigma(samples[inside])
-    smooth = _adaptive_means(samples, sigma)
-    return _replaced(knots, span_m, middle, smooth, (sigma, spacing))
+def _denoised(
+    knots: FloatArray, spans_m: list[tuple[float, float]]
+) -> tuple[FloatArray, list[Noise]]:
+    """Replace the curvature in the spans by its adaptive means."""
+    found: list[Noise] = []
+    middles: list[FloatArray | tuple[float, ...]] = []
+    means: list[FloatArray] = []
+    for span in spans_m:
+        part = _part(knots, *span)
+        spacing = _spacing(part, span)
+        reach = _WINDOWS[-1] * spacing
+        wide = (span[0] - reach, span[1] + reach)
+        middle, samples = _samples(_part(knots, *wide), wide, spacing)
+        inside = (middle >= span[0]) & (middle <= span[1])
+        sigma = _sigma(samples[inside])
+        smooth = _adaptive_means(samples, sigma)
+        ends = np.interp(span, middle, smooth)
+        middles += [span[:1], middle[inside], span[1:]]
+        means += [ends[:1], smooth[inside], ends[1:]]
+        sharpest = (_sharpest(part, span), float(np.max(np.abs(np.concatenate(means[-3:])))))
+        found.append(Noise(*span, sigma, spacing, sharpest))
+    at_m, value = np.concatenate(middles), np.concatenate(means)
+    return bent(
+        knots, _to_the_ends(knots, spans_m), at_m, lambda s_m, _: np.interp(s_m, at_m, value)
+    ), found
 
 
-def _replaced(
-    knots: FloatArray,
-    span_m: tuple[float, float],
-    middle: FloatArray,
-    smooth: FloatArray,
-    about: tuple[float, float],
-) -> tuple[FloatArray, Noise]:
-    def curve(at_m: FloatArray, _behind: bool) -> FloatArray:
-        return np.interp(at_m, middle, smooth)
+def _to_the_ends(knots: FloatArray, spans_m: list[tuple[float, float]]) -> FloatArray:
+    """Return the spans, beyond the ends of the route where they reach them.
 
-    # The ends of the route are inside, too: nothing lies behind them that could be kept.
-    wide = (
-        -1.0 if span_m[0] <= knots[S, 0] else span_m[0],
-        knots[S, -1] + 1.0 if span_m[1] >= knots[S, -1] else span_m[1],
-    )
-    corners = middle[(middle > span_m[0]) & (middle < span_m[1])]
-    after = bent(knots, np.array([wide]), corners, curve)
-    before_max, after_max = (_sharpest(k, span_m) for k in (knots, after))
-    return after, Noise(*span_m, *about, (before_max, after_max))
+    The outermost knots are inside then: nothing lies behind them that could be kept.
+    """
+    spans = np.array(spans_m)
+    spans[spans[:, 0] <= knots[S, 0], 0] -= 1.0
+    spans[spans[:, 1] >= knots[S, -1], 1] += 1.0
+    return spans
+
+
+def _part(knots: FloatArray, start_m: float, end_m: float) -> FloatArray:
+    """Return the knots from the last before the start to the first behind the end."""
+    first = max(int(np.searchsorted(knots[S], start_m, side="left")) - 1, 0)
+    return knots[:, first : int(np.searchsorted(knots[S], end_m, side="right")) + 1]
 
 
 def _sharpest(knots: FloatArray, span_m: tuple[float, float]) -> float:
@@ -232,12 +244,12 @@ def _adaptive_means(samples: FloatArray, sigma: float) -> FloatArray:
 def _first_of_each(found: list[Noise]) -> list[Noise]:
     """Return one finding per stretch: that of the first round, with what the last has left."""
     stretches: list[Noise] = []
-    for noise in found:
-        for k, known in enumerate(stretches):
-            if noise.start_m < known.end_m and noise.end_m > known.start_m:
-                left = (known.sharpest_per_m[0], noise.sharpest_per_m[1])
-                stretches[k] = known._replace(sharpest_per_m=left)
-                break
+    for noise in sorted(found):
+        known = stretches[-1] if stretches else None
+        if known is not None and noise.start_m < known.end_m:
+            left = (known.sharpest_per_m[0], noise.sharpest_per_m[1])
+            end_m = max(known.end_m, noise.end_m)
+            stretches[-1] = known._replace(end_m=end_m, sharpest_per_m=left)
         else:
             stretches.append(noise)
-    return sorted(stretches)
+    return stretches

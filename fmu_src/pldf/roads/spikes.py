@@ -78,9 +78,9 @@ def _runs(cells: NDArray[np.intp]) -> list[NDArray[np.intp]]:
 
 def _spike(knots: FloatArray, cells: NDArray[np.intp]) -> Spike | None:
     """Return what stands out at these cells, None if it is as long as a car."""
-    s_m, curvature = knots[S], np.abs(knots[CURVATURE])
+    s_m = knots[S]
     reach = slice(*np.searchsorted(s_m, (cells[0] - CAR_LENGTH_M, cells[-1] + 1.0 + CAR_LENGTH_M)))
-    near_m, near = s_m[reach], curvature[reach]
+    near_m, near = s_m[reach], np.abs(knots[CURVATURE, reach])
     within = np.flatnonzero((near_m >= cells[0]) & (near_m <= cells[-1] + 1.0))
     if len(within) == 0:
         return None
