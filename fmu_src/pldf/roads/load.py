@@ -123,7 +123,7 @@ def open_route(  # noqa: PLR0913 - all by keyword, as a person says them
         default_limit_mps: limit where the file states none and no neighbour does.
         limit_unit: unit of limits that the file states without one.
         signs: speed signs count where no speed is stated.
-        smoothing_m: wavelength below which noise of the curvature is smoothed away, in m.
+        smoothing_m: the curvature is its mean over so many metres; None: only noise is smoothed.
 
     Raises:
         ModelError: as ``open_road``.

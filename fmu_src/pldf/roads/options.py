@@ -25,8 +25,8 @@ class RoadOptions:
         default_limit_mps: limit where the file states none and no neighbour does.
         limit_unit: unit of limits that the file states without one; None: m/s, as OpenDRIVE says.
         signs: speed signs count where no speed is stated.
-        smoothing_m: wavelength in m below which noise of the curvature is smoothed away; None: it
-            is found where there is noise, 0: never.
+        smoothing_m: the curvature is its mean over so many metres; None: it is smoothed only where
+            it is noise, 0: nowhere.
     """
 
     start_road: str | None = None

@@ -70,7 +70,7 @@ def add_road(
     )  # fmt: skip
     parser.add_argument(
         "--smoothing", dest="smoothing_m", metavar="M", type=_metres,
-        help="smooth the curvature below this wavelength; 0: never (default: where it is noisy)",
+        help="take the mean curvature over M metres; 0: never (default: only noise is smoothed)",
     )  # fmt: skip
 
 
