@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from opendrive_text import SHAPES, geometry, road, straight
 from pldf.errors import ModelError
-from pldf.roads import Route, read_route, xml_tree
+from pldf.roads import Route, read_route, xml_parser
 from pldf.roads.xml_tree import Element
 
 Reader = Callable[..., Route]
@@ -116,7 +116,7 @@ def test_elements_that_are_never_closed_are_told_where_they_pile_up(
 ) -> None:
     """At once: 9 MB of them took 26 s and 1.2 GB; elements of its own tools a file may have."""
     made = []
-    monkeypatch.setattr(xml_tree, "Element", lambda *a: made.append(a) or Element(*a))
+    monkeypatch.setattr(xml_parser, "Element", lambda *a: made.append(a) or Element(*a))
     path = tmp_path / "open.xodr"
     path.write_bytes(b"<OpenDRIVE>\n" + b"<road>\n" * 1_300_000)
     with pytest.raises(

@@ -23,7 +23,8 @@ from pldf.roads.leg import Leg
 from pldf.roads.network import Network
 from pldf.roads.options import OptionNeededError
 from pldf.roads.ways import find_way
-from pldf.roads.xml_tree import Place, parse_xml
+from pldf.roads.xml_parser import parse_xml
+from pldf.roads.xml_tree import Place
 
 # A road in one direction: its id, and whether it is driven against the one in which it is drawn.
 Directed = tuple[str, bool]
@@ -171,7 +172,7 @@ def shortest_m(truth: Truth, start: Directed, named: list[str]) -> float:
 
 
 def _way(truth: Truth, **options: object) -> list[Directed]:
-    root = parse_xml(truth.text.encode(), "OpenDRIVE", _PATH, [])
+    root = parse_xml([truth.text.encode()], "OpenDRIVE", _PATH, [])
     notes: list[Finding] = []
     legs: list[Leg] = find_way(Network(root, Place(_PATH)), RoadOptions(**options), notes)  # type: ignore[arg-type]
     way = [leg.key for leg in legs]

@@ -14,7 +14,8 @@ from pldf.roads import RoadOptions, Route, chosen_route, read_route
 from pldf.roads.leg import Leg
 from pldf.roads.network import Network
 from pldf.roads.ways import find_way
-from pldf.roads.xml_tree import Place, parse_xml
+from pldf.roads.xml_parser import parse_xml
+from pldf.roads.xml_tree import Place
 
 Driven = Callable[..., list[str]]
 
@@ -32,7 +33,7 @@ def driven(tmp_path: Path, told: list[str]) -> Driven:
     def driver(made: Map, **options: object) -> list[str]:
         path = tmp_path / "town.xodr"
         path.write_text(made.text, encoding="utf-8")
-        root = parse_xml(path.read_bytes(), "OpenDRIVE", path, [])
+        root = parse_xml([path.read_bytes()], "OpenDRIVE", path, [])
         notes: list[object] = []
         legs = find_way(Network(root, Place(path)), RoadOptions(**options), notes)  # type: ignore[arg-type]
         told[:] = [f"{note.severity}: {str(note).removeprefix(str(path))}" for note in notes]  # type: ignore[attr-defined]
@@ -348,7 +349,7 @@ def test_links_that_contradict_each_other_are_told(driven: Driven, told: list[st
 def test_thousands_of_roads_are_searched() -> None:
     """A grid of one-way streets: the shortest way from corner to corner has 2 n - 2 roads."""
     n = 40
-    root = parse_xml(_grid(n).encode(), "OpenDRIVE", Path("grid.xodr"), [])
+    root = parse_xml([_grid(n).encode()], "OpenDRIVE", Path("grid.xodr"), [])
     network = Network(root, Place(Path("grid.xodr")))
     assert len(network.roads) > 10 * n * n // 2
     legs = find_way(network, RoadOptions(start_road="h0_0", to=f"v{n - 1}_{n - 2}"), [])
@@ -383,7 +384,7 @@ def _grid(n: int) -> str:
 
 
 def test_a_leg_is_a_road_and_a_direction() -> None:
-    root = parse_xml(crossing().text.encode(), "OpenDRIVE", Path("x.xodr"), [])
+    root = parse_xml([crossing().text.encode()], "OpenDRIVE", Path("x.xodr"), [])
     road = root.children[0]
     assert Leg(road, against=True) == Leg(road, against=False).turned
     assert len({Leg(road, against=True), Leg(road, against=True).turned.turned}) == 1

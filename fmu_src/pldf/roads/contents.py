@@ -9,9 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from ..errors import ModelError
-from .geometry import Cubic, Geometry, LinearCurvature, Pose, param_poly3, poly3
+import numpy as np
+
+from ..kernel.arrays import FloatArray
+from .geometry import STRAIGHT, Geometries, Points
 from .leg import Leg
+from .plan_view import ARC, NORMALIZED, POLY3, SPIRAL, GeometryTable, PlanView, Rows
+from .polynomials import GeometryError, Polynomials
+from .ragged import Indices
 from .route import LENGTH_MAX_M
 from .xml_tree import Element, Place
 
@@ -21,13 +26,34 @@ MERGE_M: Final = 1e-6
 
 @dataclass(frozen=True)
 class Contents:
-    """One road's line and height; starts are sorted and begin with 0."""
+    """One road's line and height."""
 
     leg: Leg
     place: Place
     length_m: float
-    geometries: list[tuple[float, Geometry, Element]]
-    grades: list[tuple[float, Cubic]]
+    geometries: Geometries
+    grades: FloatArray  # [n, 5], in order: start, then the cubic of the height; from 0 on
+
+    def points(self, which: Indices, ds: FloatArray) -> Points:
+        """Return the points ``ds`` metres behind the starts of the geometries ``which``.
+
+        Raises:
+            ModelError: names every polynomial of the road that is none.
+        """
+        try:
+            return self.geometries.points(which, ds)
+        except GeometryError:
+            raise self.place.errors(self.geometries.polynomials.faults()) from None
+
+    def points_at(self, s_m: FloatArray) -> Points:
+        """Return the points at ``s_m``.
+
+        Raises:
+            ModelError: as ``points``.
+        """
+        starts = self.geometries.start_m
+        which = np.maximum(np.searchsorted(starts, s_m, side="right") - 1, 0)
+        return self.points(which, np.maximum(s_m - starts[which], 0.0))
 
 
 def read_contents(leg: Leg, place: Place) -> Contents:
@@ -45,73 +71,68 @@ def read_contents(leg: Leg, place: Place) -> Contents:
     return Contents(leg, place, length, _geometries(road, place, length), _grades(road, place))
 
 
-def _geometries(
-    road: Element, place: Place, length: float
-) -> list[tuple[float, Geometry, Element]]:
-    elements = [(place.number(e, "s"), e) for e in road.all("planView", "geometry")]
-    if not elements:
+def _geometries(road: Element, place: Place, length: float) -> Geometries:
+    plans = [plan for plan in road.all("planView") if isinstance(plan, PlanView)]
+    if not any(plan.stop > plan.first for plan in plans):
         raise place.error(road, "no planView/geometry; a route needs its line")
-    elements.sort(key=lambda pair: pair[0])
-    end = 0.0
-    for start, element in elements:
-        _check_gap(start - end, end, element, place)
-        end = start + place.number(element, "length")
-    _check_gap(length - end, end, elements[-1][1], place)
-    kept = [(s, e) for s, e in elements if place.number(e, "length") > MERGE_M]
-    if not kept:
+    table = plans[0].table
+    rows = table.rows(plans)
+    _refuse(place, table.faults(rows, ("s", "length")))
+    if np.any(np.diff(rows.s_m) < 0.0):
+        rows = rows.take(np.argsort(rows.s_m, kind="stable"))
+    _check_gaps(rows, length, place)
+    if not np.all(rows.length_m > MERGE_M):
+        rows = rows.take(np.flatnonzero(rows.length_m > MERGE_M))
+    if not len(rows.line):
         raise place.error(road, "every geometry has length 0")
-    return [(s, _geometry(e, place), e) for s, e in kept]
+    _refuse(place, table.faults(rows, ("x", "y", "hdg")) + table.shape_faults(rows))
+    return _shaped(rows, table)
 
 
-def _check_gap(gap_m: float, at_m: float, element: Element, place: Place) -> None:
-    if abs(gap_m) > S_GAP_MAX_M:
-        kind = "gap" if gap_m > 0.0 else "overlap"
-        raise place.error(
-            element, f"{kind} of {abs(gap_m):.6g} m in planView at s = {at_m:.6g} m; close it"
-        )
+def _refuse(place: Place, faults: list[tuple[int, str]]) -> None:
+    if faults:
+        raise place.errors(faults)
 
 
-def _geometry(element: Element, place: Place) -> Geometry:
-    pose = Pose(*(place.number(element, name) for name in ("x", "y", "hdg")))
-    length = place.number(element, "length")
-    for shape in element.children:
-        try:
-            geometry = _shape(shape, place, pose, length)
-        except ModelError:
-            raise
-        except ValueError as error:
-            raise place.error(shape, str(error)) from None
-        if geometry is not None:
-            return geometry
-    raise place.error(element, "no line, arc, spiral, poly3 or paramPoly3 in this geometry")
+def _check_gaps(rows: Rows, length: float, place: Place) -> None:
+    ends = np.concatenate(([0.0], rows.s_m + rows.length_m))
+    gaps = np.append(rows.s_m, length) - ends
+    faults = []
+    for at in np.flatnonzero(np.abs(gaps) > S_GAP_MAX_M):
+        kind = "gap" if gaps[at] > 0.0 else "overlap"
+        text = f"{kind} of {abs(gaps[at]):.6g} m in planView at s = {ends[at]:.6g} m; close it"
+        faults.append((int(rows.line[min(int(at), len(rows.line) - 1)]), text))
+    _refuse(place, faults)
 
 
-def _shape(shape: Element, place: Place, pose: Pose, length: float) -> Geometry | None:
-    def cubic(names: str) -> Cubic:
-        a, b, c, d = (place.number(shape, name) for name in names.split())
-        return a, b, c, d
-
-    match shape.tag:
-        case "line":
-            return LinearCurvature(pose, length, 0.0, 0.0)
-        case "arc":
-            curvature = place.number(shape, "curvature")
-            return LinearCurvature(pose, length, curvature, curvature)
-        case "spiral":
-            ends = (place.number(shape, name) for name in ("curvStart", "curvEnd"))
-            return LinearCurvature(pose, length, *ends)
-        case "poly3":
-            return poly3(pose, length, cubic("a b c d"))
-        case "paramPoly3":
-            normalized = shape.attributes.get("pRange", "normalized").lower() != "arclength"
-            u, v = cubic("aU bU cU dU"), cubic("aV bV cV dV")
-            return param_poly3(pose, length, u, v, normalized=normalized)
-    return None
+def _shaped(rows: Rows, table: GeometryTable) -> Geometries:
+    curvature = np.zeros((2, len(rows.kind)))
+    for kind, count in ((ARC, 1), (SPIRAL, 2)):
+        at = np.flatnonzero(rows.kind == kind)
+        curvature[:, at] = table.numbers(rows.take(at), count).T
+    at = np.flatnonzero(rows.kind >= POLY3)
+    cubic = np.full(len(rows.kind), STRAIGHT)
+    cubic[at] = np.arange(len(at))
+    s_m, x_m, y_m, heading_rad, length_m = rows.pose.T
+    return Geometries(
+        s_m, x_m, y_m, heading_rad, length_m, curvature[0], curvature[1],
+        cubic, _polynomials(rows.take(at), table), rows.line,
+    )  # fmt: skip
 
 
-def _grades(road: Element, place: Place) -> list[tuple[float, Cubic]]:
-    records: list[tuple[float, Cubic]] = [(0.0, (0.0, 0.0, 0.0, 0.0))]
+def _polynomials(rows: Rows, table: GeometryTable) -> Polynomials:
+    cubics = np.empty((len(rows.kind), 8))
+    simple = rows.kind == POLY3
+    cubics[simple, :4] = (0.0, 1.0, 0.0, 0.0)
+    cubics[simple, 4:] = table.numbers(rows.take(np.flatnonzero(simple)), 4)
+    cubics[~simple] = table.numbers(rows.take(np.flatnonzero(~simple)), 8)
+    end = np.where(rows.kind == NORMALIZED, 1.0, rows.length_m)
+    return Polynomials(cubics, end, rows.length_m, ~simple, rows.shape_line)
+
+
+def _grades(road: Element, place: Place) -> FloatArray:
+    records: list[tuple[float, ...]] = [(0.0, 0.0, 0.0, 0.0, 0.0)]
     for element in road.all("elevationProfile", "elevation"):
-        a, b, c, d = (place.number(element, name, 0.0) for name in ("a", "b", "c", "d"))
-        records.append((place.number(element, "s"), (a, b, c, d)))
-    return sorted(records, key=lambda record: record[0])
+        cubic = (place.number(element, name, 0.0) for name in ("a", "b", "c", "d"))
+        records.append((place.number(element, "s"), *cubic))
+    return np.array(sorted(records, key=lambda record: record[0]))

@@ -70,11 +70,9 @@ class Ends:
             "shown_start": min(_SHOWN_M, length),
             "shown_end": max(length - _SHOWN_M, 0.0),
         }
-        poses = {}
-        for end, s_m in at_m.items():
-            first, *others = contents.geometries
-            start, geometry, _ = [first, *(g for g in others if g[0] <= s_m)][-1]
-            ds = np.array([max(s_m - start, 0.0)])
-            x_m, y_m = geometry.line(ds)
-            poses[end] = Pose(float(x_m[0]), float(y_m[0]), float(geometry.heading(ds)[0]))
-        return poses
+        try:
+            points = contents.points_at(np.array(list(at_m.values())))
+        except ModelError:
+            return None
+        poses = np.transpose((points.x_m, points.y_m, points.heading_rad)).tolist()
+        return {end: Pose(*pose) for end, pose in zip(at_m, poses, strict=True)}

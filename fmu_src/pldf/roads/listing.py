@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -15,7 +16,8 @@ from .options import RoadOptions
 from .route import Route
 from .search import road_length_m
 from .speeds import limits_along
-from .xml_tree import Place, parse_xml
+from .xml_parser import parse_xml
+from .xml_tree import Place
 
 
 @dataclass(frozen=True)
@@ -41,11 +43,11 @@ class RoadRow:
     ways_on: tuple[tuple[str, ...], tuple[str, ...]]
 
 
-def opendrive_rows(data: bytes, path: Path, options: RoadOptions) -> list[RoadRow]:
+def opendrive_rows(blocks: Iterable[bytes], path: Path, options: RoadOptions) -> list[RoadRow]:
     """Return the roads of an OpenDRIVE file in its order, those of junctions last.
 
     Args:
-        data: the content of the file.
+        blocks: the content of the file, as ``parse_xml`` takes it.
         path: names it in errors.
         options: how its limits are to be read.
 
@@ -53,7 +55,7 @@ def opendrive_rows(data: bytes, path: Path, options: RoadOptions) -> list[RoadRo
         ModelError: it is no OpenDRIVE file, or ids are not unique.
     """
     notes: list[Finding] = []
-    network = Network(parse_xml(data, "OpenDRIVE", path, notes), Place(path))
+    network = Network(parse_xml(blocks, "OpenDRIVE", path, notes), Place(path))
     rows = [_row(network, Leg(road, against=False), options) for road in network.roads.values()]
     return sorted(rows, key=lambda row: row.junction != "")
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Final
 
@@ -19,6 +21,7 @@ DATA: Final = Path(__file__).parent / "data"
 # Index = route_id. Only ever append: studies refer to routes by this number.
 PACKED: Final = ("study_road.xodr",)
 STUDY_ROAD_ID: Final = 0
+_BLOCK: Final = 1 << 22  # bytes that are read at a time
 
 
 def read_route(path: Path | str, options: RoadOptions = AS_WRITTEN) -> Route:
@@ -32,24 +35,30 @@ def read_route(path: Path | str, options: RoadOptions = AS_WRITTEN) -> Route:
         ModelError: when the file cannot be read or used; names file, line and way out.
     """
     path = Path(path)
-    data = _content(path)
-    if _is_opendrive(data, path):
-        return parse_opendrive(data, path, options)
-    return parse_route_csv(data, path, options.smoothing_m)
+    with _content(path) as (blocks, is_opendrive):
+        if is_opendrive:
+            return parse_opendrive(blocks, path, options)
+        return parse_route_csv(b"".join(blocks), path, options.smoothing_m)
 
 
-def _content(path: Path) -> bytes:
+@contextmanager
+def _content(path: Path) -> Iterator[tuple[Iterable[bytes], bool]]:
+    """Open a file: yield its bytes, block by block, and whether they are OpenDRIVE.
+
+    A city's file is larger than what is read of it.
+    """
     try:
-        data = path.read_bytes()
+        with path.open("rb") as file:
+            head = file.read(_BLOCK)
+            by_name = path.suffix.lower() in (".xodr", ".xml")
+            if b"<OpenDRIVE" not in head and not (by_name and head.strip()):
+                head += file.read()
+            if not head.strip():
+                raise ModelError(f"{path}: the file is empty")
+            rest = iter(lambda: file.read(_BLOCK), b"")
+            yield chain([head], rest), by_name or b"<OpenDRIVE" in head
     except OSError as error:
         raise ModelError(f"{path}: cannot be read ({error.strerror}); check the path") from None
-    if not data.strip():
-        raise ModelError(f"{path}: the file is empty")
-    return data
-
-
-def _is_opendrive(data: bytes, path: Path) -> bool:
-    return b"<OpenDRIVE" in data or path.suffix.lower() in (".xodr", ".xml")
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,10 +103,10 @@ def roads_of(name: str, options: RoadOptions = AS_WRITTEN) -> list[RoadRow]:
         ModelError: the file cannot be read.
     """
     _, path = _found(name)
-    data = _content(path)
-    if _is_opendrive(data, path):
-        return opendrive_rows(data, path, options)
-    return [csv_row(parse_route_csv(data, path, options.smoothing_m))]
+    with _content(path) as (blocks, is_opendrive):
+        if is_opendrive:
+            return opendrive_rows(blocks, path, options)
+        return [csv_row(parse_route_csv(b"".join(blocks), path, options.smoothing_m))]
 
 
 def open_route(  # noqa: PLR0913 - all by keyword, as a person says them

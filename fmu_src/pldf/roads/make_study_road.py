@@ -20,7 +20,7 @@ from typing import Final
 import numpy as np
 
 from .csv_file import write_route_csv
-from .geometry import LinearCurvature, Pose
+from .geometry import Geometries
 from .load import DATA, read_route
 
 NAME: Final = "Study road"
@@ -127,15 +127,14 @@ def _types() -> Iterator[str]:
 
 
 def _plan_view() -> Iterator[str]:
-    s_m, pose = 0, Pose(0.0, 0.0, 0.0)
+    s_m, (x_m, y_m, heading_rad) = 0, (0.0, 0.0, 0.0)
     for length, first, last in stretches():
-        where = f'x="{pose.x_m:.6f}" y="{pose.y_m:.6f}" hdg="{pose.heading_rad:.9f}"'
+        where = f'x="{x_m:.6f}" y="{y_m:.6f}" hdg="{heading_rad:.9f}"'
         head = f'<geometry s="{s_m}" {where} length="{length}">'
         yield f"      {head}{_shape(first, last)}</geometry>"
-        piece = LinearCurvature(pose, length, first, last)
-        end = np.array([float(length)])
-        x_m, y_m = piece.line(end)
-        pose = Pose(float(x_m[0]), float(y_m[0]), pose.heading_rad + float(piece.turn(end)[0]))
+        piece = Geometries.linear(x_m, y_m, heading_rad, length, first, last)
+        end = piece.points(np.zeros(1, dtype=np.intp), np.array([float(length)]))
+        x_m, y_m, heading_rad = (float(v[0]) for v in (end.x_m, end.y_m, end.heading_rad))
         s_m += length
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Iterable
 from itertools import accumulate
 from pathlib import Path
 
@@ -22,22 +23,29 @@ from .route import COLUMNS, Mark, Route, first_fault
 from .sampling import Stretch, sample
 from .speeds import limits_along
 from .ways import find_way
-from .xml_tree import Place, parse_xml
+from .xml_parser import parse_xml
+from .xml_tree import Place
 
 
-def parse_opendrive(data: bytes, path: Path, options: RoadOptions) -> Route:
-    """Return the route along the chain of roads in ``data``; ``path`` names it in errors.
+def parse_opendrive(blocks: Iterable[bytes], path: Path, options: RoadOptions) -> Route:
+    """Return the route along the chain of roads of a file.
+
+    Args:
+        blocks: the content of the file, as ``parse_xml`` takes it.
+        path: of the file, for errors.
+        options: how it is to be read.
 
     Raises:
         ModelError: with file, line, road and way out.
     """
     notes: list[Finding] = []
-    root = parse_xml(data, "OpenDRIVE", path, notes)
+    root = parse_xml(blocks, "OpenDRIVE", path, notes)
     legs = find_way(Network(root, Place(path)), options, notes)
     roads = [read_contents(leg, Place(path, leg.id)) for leg in legs]
     limits = limits_along(roads, options, notes)
     starts_m = [0.0, *accumulate(road.length_m for road in roads)]
     stretches = [sample(*each) for each in zip(roads, limits, starts_m, strict=False)]
+    notes += (note for stretch in stretches for note in stretch.notes)
     knots, joints = joined(stretches, notes)
     locate = _locator(stretches, starts_m)
     _check(knots, path, locate, sharp=False)

@@ -2,31 +2,31 @@
 
 Knots lie at every whole metre of the route, at every change of geometry, limit or elevation record
 and, on polynomials, every half metre. Lines, arcs and spirals are linear in curvature, so their
-knots are exact.
+knots are exact; what a polynomial does between its knots is looked after in ``turning.py``.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import Any, Final, NamedTuple, TypeVar
+from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..findings import Finding
 from ..kernel.arrays import FloatArray
-from .contents import MERGE_M, Contents
-from .geometry import LinearCurvature
+from .contents import Contents
+from .knots import Knots, Pieces, knots_of, pieces_of
+from .ragged import Indices
 from .speeds import Limits
-from .xml_tree import Element, Place
+from .turning import Turns, as_turned, told
+from .xml_tree import Place
 
 LINE_GAP_MAX_M: Final = 1.0
 # Differences at a border up to which there is no jump: rounding in the file, not the road.
 _SAME_CURVATURE_PER_M: Final = 1e-9
 _SAME_GRADE: Final = 1e-5
-
-Record = TypeVar("Record", bound=tuple[Any, ...])
 
 
 class Joints(NamedTuple):
@@ -49,6 +49,7 @@ class Stretch:
     start_heading_rad: float
     end_heading_rad: float
     joints: Joints
+    notes: tuple[Finding, ...] = ()
 
     @property
     def place(self) -> Place:
@@ -56,89 +57,93 @@ class Stretch:
         return self.contents.place
 
 
-class _Piece(NamedTuple):
-    """Knots of what has one geometry, one limit and one elevation record."""
+class _Borders(NamedTuple):
+    """Where geometries meet, one value each."""
 
-    columns: FloatArray  # [6, knots]
-    headings_rad: tuple[float, float]  # at both ends, as driven
-    element: Element
+    s_m: FloatArray  # on the route
+    turn_rad: FloatArray
+    gap_m: FloatArray
+    behind: Indices  # geometry
 
 
 def sample(road: Contents, limits: Limits, offset_m: float) -> Stretch:
     """Return the knots of ``road`` under ``limits``, from ``offset_m`` of the route on.
 
     Raises:
-        ModelError: the line jumps inside the road.
+        ModelError: the line jumps inside the road, or a polynomial is none; names all places.
     """
-    pieces = _pieces(road, limits, offset_m)
-    joints: list[tuple[float, float, float]] = []
-    parts = []
-    for piece, following in pairwise(pieces):
-        end, start = piece.columns[:, -1], following.columns[:, 0]
-        gap = float(np.hypot(*(start - end)[4:]))
-        if gap > LINE_GAP_MAX_M:
-            raise road.place.error(
-                following.element,
-                f"the line jumps by {gap:.3g} m at {start[0]:.6g} m of the route; correct x and y",
-            )
-        if following.element is not piece.element:
-            turn = wrapped(following.headings_rad[0] - piece.headings_rad[1])
-            joints.append((float(start[0]), turn, float(following.element.line)))
-        parts.append(piece.columns if jumps(end, start) else piece.columns[:, :-1])
-    columns = np.concatenate([*parts, pieces[-1].columns], axis=1)
+    pieces = pieces_of(road, limits, offset_m)
+    # A polynomial's knots may be two each; memory that is not written to takes none.
+    columns = np.empty((6, int(np.sum(pieces.counts * np.where(pieces.polynomial, 2, 1)))))
+    used, headings = 0, []
+    turns: list[Turns] = []
+    borders: list[_Borders] = []
+    for knots in _overlapping(knots_of(road, pieces, offset_m), pieces, turns):
+        kept, met = _kept(knots, pieces)
+        columns[:, used : used + len(kept)] = knots.columns[:, kept]
+        used += len(kept)
+        borders.append(met)
+        headings += knots.heading_rad[[0, -1]].tolist()
+    columns[:, used] = knots.columns[:, -1]
+    met = _Borders(*(np.concatenate(values) for values in zip(*borders, strict=True)))
+    line = road.geometries.line[met.behind]
+    _refuse_jumps(road.place, met, line)
+    drawn = np.pi if road.leg.against else 0.0
     return Stretch(
-        road,
-        columns,
-        pieces[0].headings_rad[0],
-        pieces[-1].headings_rad[1],
-        Joints(*np.array(joints).reshape(-1, 3).T),
-    )
+        road, columns[:, : used + 1], headings[0] + drawn, headings[-1] + drawn,
+        Joints(met.s_m, met.turn_rad, line.astype(np.float64)), told(turns, road, offset_m),
+    )  # fmt: skip
 
 
-def jumps(end: FloatArray, start: FloatArray) -> bool:
-    """Tell whether curvature or grade jump between the last knot and the next one."""
+def jumps(end: FloatArray, start: FloatArray) -> NDArray[np.bool_]:
+    """Tell whether curvature or grade jump between last knots and next ones, [6] or [6, n]."""
     _, curvature_jump, _, grade_jump, _, _ = np.abs(start - end)
-    return bool(curvature_jump > _SAME_CURVATURE_PER_M or grade_jump > _SAME_GRADE)
+    found: NDArray[np.bool_] = (curvature_jump > _SAME_CURVATURE_PER_M) | (grade_jump > _SAME_GRADE)
+    return found
 
 
-def wrapped(angle_rad: float) -> float:
-    """Return the same angle from -pi to pi."""
-    return float(np.remainder(angle_rad + np.pi, 2.0 * np.pi) - np.pi)
+def wrapped(angle_rad: FloatArray | float) -> FloatArray:
+    """Return the same angles from -pi to pi."""
+    same: FloatArray = np.remainder(angle_rad + np.pi, 2.0 * np.pi) - np.pi
+    return same
 
 
-def _pieces(road: Contents, limits: Limits, offset_m: float) -> list[_Piece]:
-    starts = [r[0] for records in (road.geometries, road.grades, limits) for r in records]
-    inner = np.unique([s for s in starts if MERGE_M < s < road.length_m - MERGE_M])
-    inner = inner[np.diff(inner, prepend=0.0) > MERGE_M]
-    borders = np.concatenate(([0.0], inner, [road.length_m]))
-    pieces = [_piece(road, limits, (float(a), float(b)), offset_m) for a, b in pairwise(borders)]
-    return pieces[::-1] if road.leg.against else pieces
+def _overlapping(some: Iterator[Knots], pieces: Pieces, turns: list[Turns]) -> Iterator[Knots]:
+    """Yield knots that turn as the road does, behind the last one that was yielded before."""
+    last: Knots | None = None
+    for each in some:
+        knots, turned = as_turned(each, pieces)
+        turns.append(turned)
+        yield knots if last is None else last.followed_by(knots)
+        last = knots.take(slice(-1, None))
 
 
-def _piece(road: Contents, limits: Limits, span: tuple[float, float], offset_m: float) -> _Piece:
-    against = road.leg.against
-    middle = 0.5 * (span[0] + span[1])
-    start, geometry, element = _latest(road.geometries, middle)
-    grade_start, (_, b, c, d) = _latest(road.grades, middle)
-    _, limit = _latest(limits, middle)
-    ends = (road.length_m - span[1], road.length_m - span[0]) if against else span
-    step = 1.0 if isinstance(geometry, LinearCurvature) else 0.5
-    route_s = _stations(offset_m + ends[0], offset_m + ends[1], step)
-    s_m = road.length_m - (route_s - offset_m) if against else route_s - offset_m
-    ds = np.maximum(s_m - start, 0.0)
-    dz = s_m - grade_start
-    sign = -1.0 if against else 1.0
-    grade = sign * (b + dz * (2.0 * c + dz * (3.0 * d)))
-    curvature = sign * geometry.curvature(ds)
-    columns = [route_s, curvature, np.full_like(route_s, limit), grade, *geometry.line(ds)]
-    first, last = (float(at) for at in geometry.heading(ds[[0, -1]]) + (np.pi if against else 0.0))
-    return _Piece(np.stack(columns), (first, last), element)
+def _kept(knots: Knots, pieces: Pieces) -> tuple[Indices, _Borders]:
+    """Return which knots but the last are needed, and where geometries meet among all.
+
+    Where a piece ends there is one knot, that of the next; two only where there is a jump.
+    """
+    ends = np.flatnonzero(np.diff(knots.piece))
+    end, start = knots.columns[:, ends], knots.columns[:, ends + 1]
+    needed = np.ones(len(knots.piece), dtype=bool)
+    needed[ends] = jumps(end, start)
+    needed[-1] = False
+    geometry = pieces.geometry[knots.piece]
+    meet = np.flatnonzero(geometry[ends] != geometry[ends + 1])
+    turn = wrapped(knots.heading_rad[ends + 1] - knots.heading_rad[ends])[meet]
+    gap = np.hypot(*(start - end)[4:])[meet]
+    met = _Borders(start[0, meet], turn, gap, geometry[ends[meet] + 1])
+    return np.flatnonzero(needed), met
 
 
-def _latest(records: Sequence[Record], at_m: float) -> Record:
-    return records[bisect_right(records, at_m, key=lambda record: record[0]) - 1]
-
-
-def _stations(start: float, end: float, step: float) -> FloatArray:
-    inner = np.arange(np.floor(start / step) + 1.0, np.ceil(end / step)) * step
-    return np.concatenate(([start], inner, [end]))
+def _refuse_jumps(place: Place, met: _Borders, line: NDArray[np.intc]) -> None:
+    far = np.flatnonzero(met.gap_m > LINE_GAP_MAX_M)
+    if len(far):
+        raise place.errors(
+            (
+                int(line[at]),
+                f"the line jumps by {met.gap_m[at]:.3g} m at {met.s_m[at]:.6g} m of the route;"
+                " correct x and y",
+            )
+            for at in far
+        )
