@@ -18,6 +18,7 @@ from ..findings import Finding
 from ..kernel.arrays import FloatArray
 from .curves import judged
 from .kinks import CAR_LENGTH_M
+from .line_check import line_doubts
 from .route import COLUMNS, Route, fingerprint, first_fault
 from .sampling import NO_JOINTS
 
@@ -47,30 +48,40 @@ def parse_route_csv(data: bytes, path: Path, smoothing_m: float | None) -> Route
         ModelError: with file, line, column, value and way out.
     """
     table = parse_table(data, path, ROUTE)
+    if ("x_m" in table) != ("y_m" in table):
+        absent = "y_m" if "x_m" in table else "x_m"
+        text = f"missing column {absent}; a line needs both x_m and y_m"
+        table.refuse([Fault(table.header_line, "", text)])
+    columns = {name: np.zeros(len(table)) for name in COLUMNS} | table.numbers
+    _refuse(table, first_fault(columns, sharp=False))
+    knots = np.stack([columns[name] for name in COLUMNS])
+    told: list[Finding] = []
+    if smoothing_m is not None or not _written_by_us(table, columns):
+        knots, told = _judged(table, knots, smoothing_m)
+    s_m, curvature, limit, grade, x_m, y_m = knots
+    return Route(
+        path.stem, s_m, curvature, limit, grade, x_m, y_m,
+        has_line="x_m" in table, notes=(*table.notes, *told),
+    )  # fmt: skip
+
+
+def _judged(
+    table: Table, knots: FloatArray, smoothing_m: float | None
+) -> tuple[FloatArray, list[Finding]]:
+    """Return the knots with the curves that a car drives, and what is told of them."""
 
     def locate(at_m: float) -> tuple[int, str]:
         row = max(int(np.searchsorted(table.numbers["s_m"], at_m, side="right")) - 1, 0)
         return table.lines[row], f"{at_m:.6g} m"
 
-    if ("x_m" in table) != ("y_m" in table):
-        absent = "y_m" if "x_m" in table else "x_m"
-        text = f"missing column {absent}; a line needs both x_m and y_m"
-        table.refuse([Fault(table.header_line, "", text)])
-    knots = {name: np.zeros(len(table)) for name in COLUMNS} | table.numbers
-    _refuse(table, first_fault(knots, sharp=False))
-    stacked = np.stack([knots[name] for name in COLUMNS])
-    told: list[Finding] = []
-    if smoothing_m is not None or not _written_by_us(table, knots):
-        stacked, told = judged(stacked, NO_JOINTS, smoothing_m, str(path), locate)
-    fault = first_fault(dict(zip(COLUMNS, stacked, strict=True)))
+    doubts = line_doubts(knots) if "x_m" in table else ()
+    told = [Finding("warning", str(table.path), *locate(at_m), text) for at_m, text in doubts]
+    knots, repairs = judged(knots, NO_JOINTS, smoothing_m, str(table.path), locate)
+    fault = first_fault(dict(zip(COLUMNS, knots, strict=True)))
     if fault is not None:
-        line, _ = locate(float(stacked[0, fault[0]]))
+        line, _ = locate(float(knots[0, fault[0]]))
         table.refuse([Fault(line, "", fault[1])])
-    s_m, curvature, limit, grade, x_m, y_m = stacked
-    return Route(
-        path.stem, s_m, curvature, limit, grade, x_m, y_m,
-        has_line="x_m" in table, notes=(*table.notes, *told),
-    )  # fmt: skip
+    return knots, told + repairs
 
 
 def write_route_csv(route: Route, path: Path | str) -> None:
