@@ -133,7 +133,7 @@ def test_a_link_to_nowhere_ends_the_way(read: Reader, kind: str) -> None:
     route = read(straight("a", link=link("successor", "x", "start", kind)))
     assert route.length_m == 100.0
     (told,) = route.notes
-    assert (told.severity, told.line, told.place) == ("note", 4, "road a")
+    assert (told.severity, told.line, told.place) == ("note", 4, "road a, s = 100 m")
     assert "'x' is not in the file" in told.text
     assert told.consequence == "the way ends here"
 

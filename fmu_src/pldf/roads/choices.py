@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final, NamedTuple
 
-from .leg import Leg
+from .leg import Leg, road_length_m
 from .network import Network, Onward, Step
 from .options import OptionNeededError, RoadOptions
-from .search import road_length_m, some
+from .search import some
 
 _STRAIGHT_DEG: Final = 30.0
 _BACK_DEG: Final = 150.0

@@ -9,6 +9,7 @@ one with ``direction="both"`` or of type ``bidirectional`` goes both ways.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
@@ -94,3 +95,12 @@ def lane_counts(road: Element) -> tuple[int, int] | None:
         max(sum(1 for _ in driven_lanes(s, road, against=way)) for s in sections) for way in _BOTH
     )
     return along, against
+
+
+def road_length_m(leg: Leg) -> float:
+    """Return the length that the road states; 0 if it states none: that is told when it is read."""
+    try:
+        length_m = float(leg.road.attributes.get("length", ""))
+    except ValueError:
+        return 0.0
+    return length_m if math.isfinite(length_m) and length_m > 0.0 else 0.0

@@ -10,11 +10,10 @@ from ..errors import ModelError
 from ..findings import Finding
 from .choices import choices
 from .contents import read_contents
-from .leg import Leg
+from .leg import Leg, road_length_m
 from .network import Network
 from .options import RoadOptions
 from .route import Route
-from .search import road_length_m
 from .speeds import limits_along
 from .xml_parser import parse_xml
 from .xml_tree import Place

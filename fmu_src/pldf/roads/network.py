@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 from ..findings import Finding, Severity
 from .ends import Ends
-from .leg import Leg, lane_counts
+from .leg import Leg, lane_counts, road_length_m
 from .meetings import ENDS, Meetings, link_at
 from .xml_tree import Element, Place
 
@@ -108,13 +108,16 @@ class Network:
         return Onward((self._linked(leg, link, self.roads[name]),), link=link)
 
     def _nowhere(self, leg: Leg, link: Element, text: str) -> Onward:
-        told = self._told("note", leg, link, text, "the way ends here")
+        told = self.told("note", leg, link, text, "the way ends here")
         return Onward(told=(told,), link=link)
 
-    def _told(
-        self, severity: Severity, leg: Leg, at: Element, text: str, then: str = ""
+    def told(
+        self, severity: Severity, leg: Leg, at: Element, text: str, then: str = "", out: str = ""
     ) -> Finding:
-        return Finding(severity, str(self.place.path), at.line, f"road {leg.id}", text, then)
+        """Return what is told of the front of a leg; ``at`` is the element that says it."""
+        s_m = 0.0 if leg.against else road_length_m(leg)
+        place = f"road {leg.id}, s = {s_m:.6g} m"
+        return Finding(severity, str(self.place.path), at.line, place, text, then, out)
 
     # A link from road to road.
 
@@ -132,7 +135,7 @@ class Network:
             text += f"by its {own[0]}"
         else:
             text = f"<{link.tag}> does not say at which end road {entered.id} is met (contactPoint)"
-        told = self._told(
+        told = self.told(
             "note" if stated not in ENDS else "warning",
             leg, link, text, f"driven from its {end} on, where the lines meet",
         )  # fmt: skip
@@ -155,14 +158,14 @@ class Network:
             with_missing = (replace(step, told=step.told + missing) for step in steps.values())
             return Onward(tuple(with_missing), (), link, name)
         text = f"junction {name} has no connection that leaves from here on a lane for cars"
-        told = self._told("note", leg, link, text, "the way ends here")
+        told = self.told("note", leg, link, text, "the way ends here")
         return Onward((), (told,), link, name)
 
     def _missing(self, leg: Leg, connections: list[Element], name: str) -> tuple[Finding, ...]:
         """Return what is told of connections to roads that are not in the file."""
         named = {_leads_to(each): each for each in connections}
         return tuple(
-            self._told("note", leg, each, f"junction {name}: road {road!r} is not in the file")
+            self.told("note", leg, each, f"junction {name}: road {road!r} is not in the file")
             for road, each in named.items()
             if road not in self.roads
         )
@@ -196,7 +199,7 @@ class Network:
             return None
         if not doubt:
             return Step(way)
-        told = self._told("warning", leg, connection, doubt, f"driven from its {end} on")
+        told = self.told("warning", leg, connection, doubt, f"driven from its {end} on")
         return Step(way, (told,))
 
     def _directly(self, leg: Leg, connection: Element, linked: str, junction: str) -> Step | None:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import heapq
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import count
 
-from .leg import Leg
+from .leg import Leg, road_length_m
 from .network import Network
 
 # How many of the named roads were passed, and where one is.
@@ -56,15 +55,6 @@ def shortest(network: Network, start: Leg, named: tuple[str, ...]) -> Found:
     passed = max(state[0] for state in reached_from)
     reach = dict.fromkeys(leg.id for done, leg in reached_from if done == passed)
     return Found((), passed, tuple(reach))
-
-
-def road_length_m(leg: Leg) -> float:
-    """Return the length that the road states; 0 if it states none: that is told when it is read."""
-    try:
-        length_m = float(leg.road.attributes.get("length", ""))
-    except ValueError:
-        return 0.0
-    return length_m if math.isfinite(length_m) and length_m > 0.0 else 0.0
 
 
 def _back(reached_from: dict[State, State | None], state: State) -> tuple[Leg, ...]:

@@ -61,7 +61,7 @@ def _as_wanted(network: Network, road: str, options: RoadOptions, notes: list[Fi
         return leg
     if options.reverse:
         place = replace(network.place, road=road)
-        text = "no lane goes against the direction in which it is drawn; leave out --reverse"
+        text = "no lane goes against the direction in which it is drawn; leave out reverse"
         raise place.error(leg.road, text)
     _tell_turned(network, leg.turned, notes)
     return leg.turned

@@ -133,20 +133,25 @@ def _tell_parallel(network: Network, before: Leg, leg: Leg, notes: list[Finding]
             ids = some(each.id for each in legs)
             text = f"junction {onward.junction} leads on to road {way.target.id} through road {ids}"
             then = f"{leg.id} is driven"
-            path, line = str(network.place.path), onward.link.line
-            notes.append(Finding("note", path, line, f"road {before.id}", text, then))
+            notes.append(network.told("note", before, onward.link, text, then))
 
 
 def _tell_end(
     network: Network, legs: Sequence[Leg], ways: Sequence[Choice], notes: list[Finding]
 ) -> None:
-    onward = network.onward(legs[-1])
+    """Tell why a way ends where nobody said it should."""
+    last = legs[-1]
+    onward = network.onward(last)
     notes += onward.told
-    if ways and onward.link is not None:
-        text = f"the way ends here: {described(network, legs[-1], ways)}"
+    if onward.link is None:
+        return
+    if ways:
+        text = f"the way ends here: {described(network, last, ways)}"
         out = f"to go on, name one more to pass: {some(names_for(legs, ways))}"
-        path, line = str(network.place.path), onward.link.line
-        notes.append(Finding("note", path, line, f"road {legs[-1].id}", text, "", out))
+        notes.append(network.told("note", last, onward.link, text, out=out))
+    elif onward.steps and onward.steps[0].leg != legs[0]:  # a ring that closes is no surprise
+        text = f"road {onward.steps[0].leg.id} comes again"
+        notes.append(network.told("note", last, onward.link, text, "the way ends before it"))
 
 
 def _out_of_reach(network: Network, start: Leg, named: tuple[str, ...], found: Found) -> ModelError:
@@ -155,8 +160,8 @@ def _out_of_reach(network: Network, start: Leg, named: tuple[str, ...], found: F
     can = f"from there the way leads to road {some(reach)}" if reach else "the way ends there"
     turned = start.turned
     if network.has_lane(turned) is not False and shortest(network, turned, named).legs:
-        can += "; in the other direction of the start road there is a way"
-        can += " (--reverse)" if turned.against else " (without --reverse)"
+        can += "; there is a way from it in the other direction "
+        can += "(reverse)" if turned.against else "(without reverse)"
     way = f"{start.id}, driven {'against' if start.against else 'along'} its direction"
     goal = named[found.passed] + (f" behind road {last}" if last != start.id else "")
     return ModelError(f"{network.place.path}: no way from road {way}, to road {goal}; {can}")
