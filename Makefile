@@ -75,15 +75,16 @@ $(BUILT): $(READY) $(FMU_SOURCES)
 	$(BIN)/pldf build --out dist
 	@touch $@
 
-# Exactly the packages of requirements-dev.txt, each checked against its hash; then this one, which
-# needs no other. The stamp is written last, so an interrupted set-up is repeated.
+# Exactly the packages of requirements-dev.txt, each checked against its hash, and no others: the file
+# is whole (pyproject.toml, tool.uv, says why nobody asks what they need). Then this one. The stamp is written last, so an interrupted set-up is repeated.
 $(READY): pyproject.toml requirements-dev.txt
 	@test -n "$(PYTHON)" || { echo "make: no Python 3.11 or newer found;" \
 		"install one or name it: make PYTHON=/path/to/python3.11 $(MAKECMDGOALS)" >&2; exit 1; }
 	$(PYTHON) -c 'import sys; sys.exit(None if sys.version_info >= (3, 11) else \
 		"make: " + sys.version.split()[0] + " is too old, Python 3.11 or newer is needed")'
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --require-hashes --requirement requirements-dev.txt
+	$(BIN)/python -m pip install --quiet --no-deps --require-hashes \
+		--requirement requirements-dev.txt
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
 	@touch $@
 

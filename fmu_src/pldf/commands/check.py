@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import isnan
 from pathlib import Path
 from typing import Any, Final
@@ -16,9 +16,10 @@ from rich.table import Table
 from rich.text import Text
 
 from ..analysis.checks import CheckedFile, Checks, check_file, check_folder, is_study
+from ..analysis.checks.asam import HOW_TO_GET, checker
 from ..analysis.checks.files import Known
 from ..analysis.checks.folder import with_copies, with_own_road
-from ..analysis.checks.kinds import KNOWN_SUFFIXES
+from ..analysis.checks.kinds import KNOWN_SUFFIXES, is_opendrive
 from ..analysis.study_folder import StudyFolder
 from ..errors import ModelError
 from ..findings import SEVERITIES, Finding
@@ -31,7 +32,8 @@ from .shared.progress import recordings_bar
 from .shared.road import add_road, chosen_road, road_options
 
 EXAMPLE: Final = (
-    "pldf check laboratory --route road.xodr\n"
+    "pldf check road.xodr\n"
+    "  pldf check laboratory --route road.xodr\n"
     "  pldf check drive1.csv drive2.csv --route study --json > problems.json\n"
     "  pldf check simulator.csv --suggest-map > map.toml"
 )
@@ -57,6 +59,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--suggest-map", action="store_true",
         help="print a first mapping file for the recording PATH, to complete and give to --map",
     )  # fmt: skip
+    parser.add_argument(
+        "--no-asam", dest="asam", action="store_false",
+        help="do not ask ASAM's own checker about OpenDRIVE files, where it is installed",
+    )  # fmt: skip
     parser.set_defaults(wrong_usage=parser.error)
     parser.add_argument(
         "--json", action="store_true", help="print all that was found, for programs"
@@ -75,6 +81,7 @@ def run(options: argparse.Namespace) -> int:
         route_arrays(road.route) if road else None,
         mapping,
         road_options(options),
+        asam=options.asam,
     )
     checks, files = Checks(), list[CheckedFile]()
     for path in options.paths:
@@ -83,7 +90,7 @@ def run(options: argparse.Namespace) -> int:
         else:
             paths = _files_in(path) if path.is_dir() else [path]
             files += (check_file(file, known) for file in paths)
-    checks += Checks(tuple(with_copies(files)))
+    checks += Checks(tuple(with_copies(files)), tuple(_not_asked(files, known)))
     if options.json:
         print(json.dumps(_report(checks), indent=2))
     else:
@@ -97,6 +104,14 @@ def _study(
     study = StudyFolder(folder, road.route if road else None, frozenset(without), mapping)
     with recordings_bar("check") as reading:
         return check_folder(with_own_road(study), reading)
+
+
+def _not_asked(files: Sequence[CheckedFile], known: Known) -> Iterator[Finding]:
+    """Yield once that ASAM's checker could be asked, too."""
+    roads = [one.path for one in files if one.kind == "road" and is_opendrive(one.path)]
+    if roads and known.asam and checker() is None:
+        text = "ASAM's own checker of OpenDRIVE is not installed"
+        yield Finding("note", str(roads[0]), 0, "", text, "", HOW_TO_GET)
 
 
 def _files_in(folder: Path) -> list[Path]:

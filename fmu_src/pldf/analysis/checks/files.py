@@ -28,8 +28,9 @@ from ..drives_table import read_drives
 from ..exclusions import read_exclusions
 from ..problems import findings_of
 from ..questionnaires import read_questionnaire, survey_map
+from .asam import asam_findings
 from .checked import CheckedFile
-from .kinds import PEOPLE, Kind, kind_of
+from .kinds import PEOPLE, Kind, is_opendrive, kind_of
 from .names import people
 
 _UNKNOWN: Final = (
@@ -45,11 +46,13 @@ class Known(NamedTuple):
         route: the road driven, None if it is not known.
         map: what columns are called; None: a ``map.toml`` near the file, if there.
         road: how the files of roads are to be read.
+        asam: ASAM's own checker is asked about OpenDRIVE files, if it is installed.
     """
 
     route: RouteArrays | None = None
     map: RecordingMap | None = None
     road: RoadOptions = AS_WRITTEN
+    asam: bool = False
 
 
 def check_file(path: Path, known: Known) -> CheckedFile:
@@ -64,6 +67,8 @@ def check_file(path: Path, known: Known) -> CheckedFile:
         findings = _CHECKS[kind](path, known)
     except ModelError as error:
         findings = findings_of(error, str(path))
+    if known.asam and kind == "road" and is_opendrive(path):
+        findings += asam_findings(path, findings)
     return CheckedFile(path, kind, tuple(findings))
 
 

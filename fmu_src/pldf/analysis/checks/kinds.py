@@ -55,21 +55,34 @@ def kind_of(path: Path) -> Kind:
     Raises:
         ModelError: the file cannot be read.
     """
-    try:
-        with path.open("rb") as file:
-            start = file.read(1 << 16)
-    except OSError as error:
-        raise ModelError(f"{path}: cannot be read ({error.strerror}); check the path") from None
+    start = _start_of(path)
     suffix = path.suffix.lower()
     if start.startswith(MAGIC) or suffix == ".pldf":
         return "profile"
-    if b"<OpenDRIVE" in start or suffix in (".xodr", ".xml"):
+    if _is_opendrive(start, suffix):
         return "road"
     if suffix == ".toml":
         return _kind_of_toml(path)
     if suffix in _TABLE_SUFFIXES:
         return _kind_of_table(path)
     return "recording" if suffix in SUFFIXES else ""
+
+
+def is_opendrive(path: Path) -> bool:
+    """Return whether ``path`` is, or should be, a road in OpenDRIVE; errors as ``kind_of``."""
+    return _is_opendrive(_start_of(path), path.suffix.lower())
+
+
+def _is_opendrive(start: bytes, suffix: str) -> bool:
+    return b"<OpenDRIVE" in start or suffix in (".xodr", ".xml")
+
+
+def _start_of(path: Path) -> bytes:
+    try:
+        with path.open("rb") as file:
+            return file.read(1 << 16)
+    except OSError as error:
+        raise ModelError(f"{path}: cannot be read ({error.strerror}); check the path") from None
 
 
 def _kind_of_toml(path: Path) -> Kind:
