@@ -173,6 +173,17 @@ def test_learning_without_a_store_is_warned_of(drive: Run) -> None:
     assert "nothing kept: there is no profile store" in out
 
 
+def test_what_was_repaired_on_the_road_is_told_once(drive: Run) -> None:
+    """By the command, not again by each FMU that reads the same file."""
+    spike = "200,0,20\n200,0.05,20\n201,0.05,20\n201,0,20\n"
+    lines = ROAD.splitlines(keepends=True)
+    Path("road.csv").write_text("".join([*lines[:-1], spike, lines[-1]]))
+    status, _, err = drive("--driver", "none")
+    assert status == 0
+    assert err.count("\n") == 1
+    assert "is no curve of a road" in err
+
+
 def test_a_drive_that_is_given_up_still_leaves_its_recording(drive: Run) -> None:
     status, out, err = drive(
         "--driver", "none", "--set", "body.power_max_w=1", "--set", "grade_from_route=false",

@@ -96,7 +96,7 @@ def run(options: argparse.Namespace) -> None:
             )  # fmt: skip
     csv.parent.mkdir(parents=True, exist_ok=True)
     write_recording(csv, done.recording)
-    print_warnings(done.messages)
+    print_warnings(done.messages, road.route.notes)
     print(f"recording  {csv}")
     _plot(options.plot or csv.with_suffix(".png"), done, phase.name)
     _print_rates(done)

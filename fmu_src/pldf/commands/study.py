@@ -160,7 +160,8 @@ def _drive(options: argparse.Namespace, folder: StudyResults, job: Job) -> None:
                 file=sys.stderr,
             )
             raise
-    print_warnings(warning for result in results for warning in result.warnings)
+    warnings = (warning for result in results for warning in result.warnings)
+    print_warnings(warnings, folder.study.notes)
 
 
 def _show(study: Study, out: Path) -> None:

@@ -17,6 +17,7 @@ from ...cosim.master import unpacked
 from ...cosim.settable import Chosen
 from ...cosim.values import FmuMessage
 from ...errors import ModelError
+from ...findings import Finding
 from .road import Parser, add_road
 from .settings import setting, split_settings
 
@@ -81,10 +82,12 @@ def chosen_values(fmus: Mapping[str, Fmu], settings: list[str]) -> Chosen:
         raise ModelError(f"--set {problem}") from None
 
 
-def print_warnings(messages: Iterable[FmuMessage]) -> None:
-    """Print what the FMUs warned of, once, on stderr."""
+def print_warnings(messages: Iterable[FmuMessage], told: Iterable[Finding] = ()) -> None:
+    """Print what the FMUs warned of, once, on stderr; not what was told of their files before."""
+    # An FMU knows a file by its whole path, a person by the name that was given.
+    known = tuple(str(finding).removeprefix(finding.file) for finding in told)
     for message in dict.fromkeys(messages):
-        if message.level == "warning":
+        if message.level == "warning" and not message.text.endswith(known):
             print(f"pldf: {message.fmu}: {message.text}", file=sys.stderr)
 
 
