@@ -92,6 +92,7 @@ def test_a_map_is_to_scale_on_paper_and_on_the_page() -> None:
     per_px = [np.ptp(axes.get_xlim()) / box.width, np.ptp(axes.get_ylim()) / box.height]
     assert per_px[0] == pytest.approx(per_px[1], rel=1e-3)
     layout = screen.drawn(scene).layout
+    assert not any(trace.line.simplify for trace in screen.drawn(scene).data)
     assert (layout.yaxis.scaleanchor, layout.yaxis.fixedrange) == ("x", False)
     bar = next(e for e in scene.panels[0].elements if isinstance(e, Line) and not e.label
                and len(e.x) == 6)  # fmt: skip

@@ -54,7 +54,7 @@ def drawn(scene: Scene) -> Any:
         figure.update_yaxes(**_axis(panel.y), title_text=_text(panel.y.title), **place)
         if scene.repeats_y(number):
             figure.update_yaxes(showticklabels=False, title_text="", **place)
-        if scene.at_foot(number) and not suffix:  # the unit tells enough
+        if scene.at_foot(number) and (scene.to_scale or not suffix):  # else the unit tells enough
             figure.update_xaxes(title_text=_text(panel.x.title), **place)
     _style(figure, scene, rows_px + gaps_px)
     _list_once(figure, scene)
@@ -194,6 +194,7 @@ def _style(figure: Any, scene: Scene, panels_px: float) -> None:
     if scene.to_scale:
         figure.update_yaxes(scaleanchor="x", constrain="domain")
         figure.update_xaxes(constrain="domain")
+        figure.update_traces(line_simplify=False)  # it would make corners of curves
     figure.update_xaxes(fixedrange=categories, hoverformat=".3f" if scene.panels[0].x.unit else "")
 
 
