@@ -78,9 +78,9 @@ def test_a_road_without_speed_needs_a_default(read: Reader, inside: str) -> None
     assert set(read(straight("1", inside=inside), default_limit_mps=9.0).speed_limit_mps) == {9.0}
 
 
-def test_a_speed_that_begins_late_leaves_a_hole(read: Reader) -> None:
+def test_before_a_speed_that_begins_late_it_counts_already(read: Reader) -> None:
     late = '<type s="30" type="rural"><speed max="20"/></type>'
-    with pytest.raises(ModelError, match="no speed limit from s = 0 m on"):
-        read(straight("1", inside=late))
-    route = read(straight("1", inside=late), default_limit_mps=9.0)
-    assert list(np.asarray(route_arrays(route).limit_mps)[[29, 30]]) == [9.0, 20.0]
+    for options in ({}, {"default_limit_mps": 9.0}):
+        route = read(straight("1", inside=late), **options)
+        assert set(route.speed_limit_mps) == {20.0}
+        assert any("1 gap states no limit (30 m)" in note.text for note in route.notes)

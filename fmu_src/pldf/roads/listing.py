@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,9 +14,10 @@ from .leg import Leg, road_length_m
 from .network import Network
 from .options import RoadOptions
 from .route import Route
+from .speed_signs import signals_of
 from .speeds import limits_along
 from .xml_parser import parse_xml
-from .xml_tree import Place
+from .xml_tree import Element, Place
 
 
 @dataclass(frozen=True)
@@ -54,8 +55,11 @@ def opendrive_rows(blocks: Iterable[bytes], path: Path, options: RoadOptions) ->
         ModelError: it is no OpenDRIVE file, or ids are not unique.
     """
     notes: list[Finding] = []
-    network = Network(parse_xml(blocks, "OpenDRIVE", path, notes), Place(path))
-    rows = [_row(network, Leg(road, against=False), options) for road in network.roads.values()]
+    root = parse_xml(blocks, "OpenDRIVE", path, notes)
+    network, signals = Network(root, Place(path)), signals_of(root)
+    rows = [
+        _row(network, Leg(road, against=False), signals, options) for road in network.roads.values()
+    ]
     return sorted(rows, key=lambda row: row.junction != "")
 
 
@@ -65,7 +69,9 @@ def csv_row(route: Route) -> RoadRow:
     return RoadRow("", route.name, "", route.length_m, None, limits, ((), ()))
 
 
-def _row(network: Network, leg: Leg, options: RoadOptions) -> RoadRow:
+def _row(
+    network: Network, leg: Leg, signals: Mapping[str, Element], options: RoadOptions
+) -> RoadRow:
     given = leg.road.attributes
     junction = given.get("junction", "-1")
     legs = [each for each in (leg, leg.turned) if network.has_lane(each) is not False]
@@ -79,19 +85,21 @@ def _row(network: Network, leg: Leg, options: RoadOptions) -> RoadRow:
         "" if junction == "-1" else junction,
         road_length_m(leg),
         network.lanes(leg.road),
-        _limits_mps(network.place.path, legs or [leg], options),
+        _limits_mps(network.place.path, legs or [leg], signals, options),
         (along, against),
     )
 
 
-def _limits_mps(path: Path, legs: list[Leg], options: RoadOptions) -> tuple[float, float] | None:
+def _limits_mps(
+    path: Path, legs: list[Leg], signals: Mapping[str, Element], options: RoadOptions
+) -> tuple[float, float] | None:
     """Return the lowest and the highest limit in the directions in which cars drive."""
     stated = replace(options, default_limit_mps=None)
     limits: list[float] = []
     for leg in legs:
         try:
             contents = read_contents(leg, Place(path, leg.id))
-            (steps,) = limits_along([contents], stated, [])
+            (steps,), _ = limits_along([contents], signals, stated, [])
         except ModelError:
             continue  # said when the road is driven
         limits += [limit for _, limit in steps]

@@ -21,6 +21,7 @@ from .network import Network
 from .options import RoadOptions
 from .route import COLUMNS, Mark, Route, first_fault
 from .sampling import Stretch, sample
+from .speed_signs import signals_of
 from .speeds import limits_along
 from .ways import find_way
 from .xml_parser import parse_xml
@@ -42,7 +43,7 @@ def parse_opendrive(blocks: Iterable[bytes], path: Path, options: RoadOptions) -
     root = parse_xml(blocks, "OpenDRIVE", path, notes)
     legs = find_way(Network(root, Place(path)), options, notes)
     roads = [read_contents(leg, Place(path, leg.id)) for leg in legs]
-    limits = limits_along(roads, options, notes)
+    limits, signs = limits_along(roads, signals_of(root), options, notes)
     starts_m = [0.0, *accumulate(road.length_m for road in roads)]
     stretches = [sample(*each) for each in zip(roads, limits, starts_m, strict=False)]
     notes += (note for stretch in stretches for note in stretch.notes)
@@ -54,9 +55,9 @@ def parse_opendrive(blocks: Iterable[bytes], path: Path, options: RoadOptions) -
     s_m, curvature, limit, grade, x_m, y_m = knots
     header = root.find("header")
     name = header.attributes.get("name", "").strip() if header is not None else ""
-    marks = tuple(
+    begun = [
         Mark(s, "road", _named(leg), leg.against) for s, leg in zip(starts_m, legs, strict=False)
-    )
+    ]
     return Route(
         name or path.stem,
         s_m,
@@ -66,7 +67,7 @@ def parse_opendrive(blocks: Iterable[bytes], path: Path, options: RoadOptions) -
         x_m,
         y_m,
         notes=(*notes, *told),
-        marks=marks,
+        marks=tuple(sorted([*begun, *signs], key=lambda mark: mark.s_m)),
     )
 
 

@@ -1,121 +1,130 @@
-"""Legal limits along one OpenDRIVE road: ``type/speed``, overridden by the lanes' ``speed``.
+"""Legal limits along a way: what its roads state, signs where they state nothing, and gaps filled.
 
-Decisions: of several driving lanes on the travel side the lowest stated limit counts; ``no limit``
-means the recommended 130 km/h of a derestricted motorway, because a profile needs a number;
-``undefined`` and -1 mean that nothing is stated. Traffic signs (``signals``) are not read.
+Decisions: a gap (most often a connecting road in a junction) has the limit of what was driven
+before it until the next one is stated; at the start of the way, that of what follows. A default
+limit counts only where the whole way states nothing, and before the first sign. A sign counts only
+where no speed is stated, until the next sign or stated speed; the end of a limit returns to the one
+that was stated last. ``no limit`` means the recommended 130 km/h of a derestricted motorway, since
+a profile needs a number; ``undefined`` and -1 mean that nothing is stated.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from dataclasses import dataclass
-from typing import Final
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import groupby
+from typing import Final, NamedTuple
 
 from ..findings import Finding
-from ..kernel.units import KMH_PER_MPS, MPS_PER_KMH
+from ..kernel.units import KMH_PER_MPS
 from .contents import Contents
-from .options import RoadOptions
-from .xml_tree import Element, Place
+from .limit_notes import notes_on_gaps, notes_on_signs
+from .limit_spans import Span, changes, cut, filled
+from .options import OptionNeededError, RoadOptions
+from .route import Mark
+from .speed_records import Stated, stated_limits
+from .speed_signs import Sign, SignReader
+from .speed_values import Speed, SpeedReader
+from .spots import counted, told
+from .xml_tree import Element
 
-NO_LIMIT_MPS: Final = 130.0 / KMH_PER_MPS
-_UNITS: Final = {"m/s": 1.0, "km/h": MPS_PER_KMH, "mph": 0.44704}
-_WAY_OUT: Final = "add type/speed to the file or give a default limit (--default-limit KMH)"
-
+# What is proposed where a default is missing: the limit of a German country road.
+_PROPOSED_MPS: Final = 100.0 / KMH_PER_MPS
+# A record that begins later than this is told, although it counts from the start.
+_LATE_TOLD_M: Final = 0.1
 
 # Start in m over the road's own arc length and limit in m/s, in order of s from 0 on.
 Limits = list[tuple[float, float]]
 
 
-@dataclass(frozen=True)
-class Record:
-    """A limit in m/s (None: nothing stated) from ``start_m`` on."""
+class WayLimits(NamedTuple):
+    """The limits of a way.
 
-    start_m: float
-    limit_mps: float | None
+    Attributes:
+        limits: of each road, over its own arc length.
+        marks: where a limit or a sign begins, in order of the route's arc length.
+    """
+
+    limits: list[Limits]
+    marks: list[Mark]
 
 
-def limits_along(roads: list[Contents], options: RoadOptions, notes: list[Finding]) -> list[Limits]:
-    """Return the limits of each road of a way, over the road's own arc length.
+def limits_along(
+    roads: Sequence[Contents],
+    signals: Mapping[str, Element],
+    options: RoadOptions,
+    notes: list[Finding],
+) -> WayLimits:
+    """Return the limits of a way, without gaps.
 
     Args:
         roads: in the order in which they are driven.
-        options: what counts where the file states no limit, or no unit.
-        notes: gets what is told about them.
+        signals: of the file, by id (``signals_of``).
+        options: default limit, unit where the file states none, whether signs are read.
+        notes: gets what is told of limits and signs.
 
     Raises:
-        ModelError: where no limit is stated and there is no default; for unusable speeds.
+        ModelError: unusable speeds, all of them; or nothing is stated and there is no default.
     """
-    return [_limits(road, options.default_limit_mps) for road in roads]
+    reader = SpeedReader(options)
+    sign_reader = SignReader(signals, reader)
+    stated = [stated_limits(road, reader) for road in roads]
+    signs = [
+        sign_reader.signs(road, each.sections) for road, each in zip(roads, stated, strict=True)
+    ]
+    reader.refuse()
+    default = _default(options)
+    read = signs if options.signs else [[] for _ in roads]
+    parts = cut(roads, [each.records for each in stated], read, default)
+    spans = filled(parts.spans, default)
+    if spans is None:
+        raise _nothing_stated(roads[0], signs, options)
+    notes += [*reader.notes(), *_late(stated)]
+    notes += notes_on_gaps(spans, default_given=default is not None)
+    if options.signs:
+        notes += [*notes_on_signs(parts), *sign_reader.notes()]
+    return WayLimits(_by_road(spans), [_mark(span) for span in changes(spans)])
 
 
-def _limits(contents: Contents, default_mps: float | None) -> Limits:
-    road, place, length_m = contents.leg.road, contents.place, contents.length_m
-    types = _records(road, place, "type", "s")
-    lanes = _lane_sections(road, place, _side(road, contents.leg.against), length_m)
-    starts = {0.0} | {r.start_m for r in types} | {r.start_m for lane in lanes for r in lane}
-    steps: Limits = []
-    for start in sorted(s for s in starts if 0.0 <= s < length_m):
-        stated = [at for at in (_in_force(lane, start) for lane in lanes) if at is not None]
-        limit = min(stated) if stated else _in_force(types, start)
-        limit = default_mps if limit is None else limit
-        if limit is None:
-            raise place.error(road, f"no speed limit from s = {start:g} m on; {_WAY_OUT}")
-        if not steps or steps[-1][1] != limit:
-            steps.append((start, limit))
-    return steps
+def _default(options: RoadOptions) -> Speed | None:
+    mps = options.default_limit_mps
+    return None if mps is None else Speed(mps, f"{mps * KMH_PER_MPS:.4g} km/h")
 
 
-def _side(road: Element, against: bool) -> str:
-    left_hand_traffic = road.attributes.get("rule", "RHT").upper() == "LHT"
-    return "left" if against != left_hand_traffic else "right"
+def _nothing_stated(
+    road: Contents, signs: Sequence[list[Sign]], options: RoadOptions
+) -> OptionNeededError:
+    unread = sum(sign.limit is not None for each in signs for sign in each)
+    also = f" ({counted(unread, 'speed sign')} left out)" if unread else ""
+    text = f"no speed limit from s = 0 m on{also}; add type/speed to the file or give a limit"
+    matter = str(road.place.error(road.leg.road, text))
+    return OptionNeededError(matter, replace(options, default_limit_mps=_PROPOSED_MPS))
 
 
-def _lane_sections(road: Element, place: Place, side: str, length_m: float) -> list[list[Record]]:
-    """Return the records of every driving lane on one side, each closed at its section's end."""
-    sections = [(place.number(e, "s"), e) for e in road.all("lanes", "laneSection")]
-    sections.sort(key=lambda pair: pair[0])
-    ends = [*(start for start, _ in sections[1:]), length_m][: len(sections)]
-    lanes = []
-    for (start, section), end in zip(sections, ends, strict=True):
-        for lane in section.all(side, "lane"):
-            if lane.attributes.get("type", "").lower() == "driving":
-                records = [
-                    Record(start + place.number(e, "sOffset", 0.0), _speed(e, place))
-                    for e in lane.all("speed")
-                ]
-                records = sorted(records, key=lambda r: r.start_m)
-                lanes.append([r for r in records if r.start_m < end] + [Record(end, None)])
-    return lanes
+def _late(stated: Sequence[Stated]) -> Iterator[Finding]:
+    spots = [late.spot for each in stated for late in each.late if late.by_m > _LATE_TOLD_M]
+    if spots:
+        text = f"{counted(len(spots), 'limit')} beginning up to 0.5 m late"
+        yield told("note", spots, text, "counts from the start of its road or lane section")
 
 
-def _records(road: Element, place: Place, tag: str, position: str) -> list[Record]:
-    records = []
-    for element in road.all(tag):
-        speed = element.find("speed")
-        limit = None if speed is None else _speed(speed, place)
-        records.append(Record(place.number(element, position), limit))
-    return sorted(records, key=lambda r: r.start_m)
+def _by_road(spans: Sequence[Span]) -> list[Limits]:
+    """Return the steps of each road over its own arc length; equal neighbours are one."""
+    roads = []
+    for _, of_road in groupby(spans, key=lambda span: span.leg):
+        steps: Limits = []
+        for span in sorted(of_road, key=lambda span: span.start_m):
+            assert span.limit is not None  # they are filled
+            if not steps or steps[-1][1] != span.limit.mps:
+                steps.append((span.start_m, span.limit.mps))
+        roads.append(steps)
+    return roads
 
 
-def _in_force(records: list[Record], at_m: float) -> float | None:
-    index = bisect_right(records, at_m, key=lambda r: r.start_m)
-    return records[index - 1].limit_mps if index else None
-
-
-def _speed(element: Element, place: Place) -> float | None:
-    text = element.attributes.get("max", "").strip().lower()
-    if text == "no limit":
-        return NO_LIMIT_MPS
-    if text == "undefined":
-        return None
-    unit = element.attributes.get("unit", "m/s").strip()
-    if unit.lower() not in _UNITS:
-        raise place.error(element, f"speed unit {unit[:20]!r} is unknown; use {', '.join(_UNITS)}")
-    value = place.number(element, "max")
-    if value == -1.0:
-        return None
-    limit = value * _UNITS[unit.lower()]
-    if not 0.0 < limit <= 300.0 / KMH_PER_MPS:
-        shown = f"{text} {unit}" + ("" if "unit" in element.attributes else " (no unit given)")
-        raise place.error(element, f"speed limit {shown} must lie above 0 and up to 300 km/h")
-    return limit
+def _mark(span: Span) -> Mark:
+    shown = span.limit.shown if span.limit else ""
+    if span.sign is not None:
+        name = "end of limit sign" if span.sign.limit is None else f"{shown} sign"
+    else:
+        name = f"{'default' if span.source == 'default' else 'legal'} limit {shown}"
+    return Mark(span.at_m, "sign", name)
