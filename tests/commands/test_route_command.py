@@ -102,7 +102,8 @@ def test_the_start_road_can_be_chosen(run: Run) -> None:
     arguments = ("road.xodr", "--default-limit", "70", "--start-road")
     assert run(*arguments, "77")[0] == 0
     status, _, err = run(*arguments, "78")
-    assert (status, err) == (1, "pldf: road.xodr: no road '78'; it has 77\n")
+    told = "no road '78'; it has 77; pldf route road.xodr --list shows all"
+    assert (status, err) == (1, f"pldf: road.xodr: {told}\n")
 
 
 def test_bad_files_exit_with_1_and_one_or_two_lines(run: Run) -> None:
@@ -206,10 +207,11 @@ def test_the_roads_of_a_file_are_listed(run: Run) -> None:
         ["w", "100.0", "m", "70", "km/h", "1", "+", "1", "s,", "e,", "n", "-"],
         ["s", "100.0", "m", "50", "km/h", "1", "+", "1", "w,", "e,", "n", "-"],
         ["e", "100.0", "m", "50", "km/h", "1", "+", "1", "-", "w,", "s,", "n"],
-        ["n", "100.0", "m", "none", "1", "+", "1", "-", "w,", "s,", "e"],
+        ["n", "100.0", "m", "-", "1", "+", "1", "-", "w,", "s,", "e"],
     ]
     assert inner[1].split() == ["J", "ws", "14.1", "m", "50", "km/h", "1", "+", "0", "s", "-"]
     assert "4 roads, 12 connecting roads in junctions" in out
+    assert "limits -: the road states none" in out
 
 
 @pytest.mark.parametrize(("source", "row"), [("study", "1     Study road"), ("my.csv", "-")])

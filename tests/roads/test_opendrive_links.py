@@ -86,16 +86,19 @@ def test_a_loop_ends_where_it_began(read: Reader) -> None:
 
 def test_the_start_must_be_clear(read: Reader) -> None:
     two = (straight("7"), straight("8"))
-    with pytest.raises(ModelError, match=r"start at road 7, 8; name one: --start-road 7 \(or 8\)"):
+    with pytest.raises(
+        ModelError, match=r"start at road 7, 8; name one: --start-road 7 \(or 8; pldf route"
+    ):
         read(*two)
     assert read(*two, start_road="8").length_m == 100.0
     with pytest.raises(ModelError, match="no road '9'; it has 7, 8"):
         read(*two, start_road="9")
 
 
-def test_two_roads_with_one_id_are_refused(read: Reader) -> None:
-    with pytest.raises(ModelError, match=r"line \d+: <road> id '7' is that of line \d+ too"):
-        read(straight("7"), straight("8"), straight("7"))
+def test_roads_with_one_id_are_refused_all_at_once(read: Reader) -> None:
+    with pytest.raises(ModelError, match=r"line \d+: <road> id '7' is that of line \d+ too") as no:
+        read(straight("7"), straight("8"), straight("7"), straight("8"))
+    assert "<road> id '8' is that of line" in str(no.value)
 
 
 def test_a_start_road_inside_the_chain_begins_there(read: Reader) -> None:

@@ -226,10 +226,13 @@ def _leads_to(connection: Element) -> str:
 
 def _by_id(elements: Iterable[Element], place: Place) -> dict[str, Element]:
     by_id: dict[str, Element] = {}
+    faults = []
     for element in elements:
         name = element.attributes.get("id", "")
-        if name in by_id:
-            text = f"id {name!r} is that of line {by_id[name].line} too; ids must differ"
-            raise place.error(element, f"<{element.tag}> {text}")
-        by_id[name] = element
+        first = by_id.setdefault(name, element)
+        if first is not element:
+            text = f"<{element.tag}> id {name!r} is that of line {first.line} too; ids must differ"
+            faults.append((element.line, text))
+    if faults:
+        raise place.errors(faults)
     return by_id

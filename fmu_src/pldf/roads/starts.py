@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -51,7 +52,7 @@ def start_of(
     raise OptionNeededError(
         f"{network.place.path}: the route could start at road {some(found)}; name one",
         replace(options, start_road=found[0]),
-        some(found[1:]),
+        f"{some(found[1:])}; {_list_command(network)}",
     )
 
 
@@ -120,4 +121,9 @@ def _first_named(
 
 def unknown_road(network: Network, road: str) -> ModelError:
     """Return the error for a road that the file does not have."""
-    return ModelError(f"{network.place.path}: no road {road!r}; it has {some(network.roads)}")
+    has = f"it has {some(network.roads)}; {_list_command(network)}"
+    return ModelError(f"{network.place.path}: no road {road!r}; {has}")
+
+
+def _list_command(network: Network) -> str:
+    return f"pldf route {shlex.quote(str(network.place.path))} --list shows all"

@@ -28,6 +28,8 @@ def road_table(rows: Iterable[RoadRow]) -> Iterator[str]:
     yield ""
     yield f"{_counted(len(plain), 'road')}, {_counted(len(inner), 'connecting road')} in junctions"
     yield "lanes: for cars, along the direction in which the road is drawn + against it"
+    if any(row.limits_mps is None for row in rows):
+        yield "limits -: the road states none; on a way it has that of its neighbours"
 
 
 def _cells(row: RoadRow) -> tuple[str, ...]:
@@ -46,7 +48,7 @@ def _cells(row: RoadRow) -> tuple[str, ...]:
 
 def _limits(limits_mps: tuple[float, float] | None) -> str:
     if limits_mps is None:
-        return "none"
+        return "-"
     low, high = (f"{round(limit * KMH_PER_MPS, 1):g}" for limit in limits_mps)
     return f"{low} km/h" if low == high else f"{low}-{high} km/h"
 
