@@ -152,6 +152,40 @@ def test_a_sign_beside_the_place_where_the_road_states_its_limit_does_not(read: 
     assert not read(signed(sign(50, value="70"), stated=stated)).notes
 
 
+@pytest.mark.parametrize("seed", range(40))
+def test_what_counts_per_metre_is_what_a_walk_along_the_road_finds(read: Reader, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    stated = {int(s): rng.choice([0, 60, 90]) for s in rng.choice(100, 3, replace=False)}
+    posted = {int(s): rng.choice([0, 30, 50, 70]) for s in rng.choice(100, 4, replace=False)}
+    against = bool(rng.integers(2))
+    types = "".join(
+        f'<type s="{s}">{f"""<speed max="{v}" unit="km/h"/>""" if v else ""}</type>'
+        for s, v in {0: 0, **stated}.items()
+    )
+    facing = "-" if against else "+"
+    signs = [
+        sign(s, "274" if v else "282", value=str(v) if v else "", orientation=facing)
+        for s, v in posted.items()
+    ]
+    road = signed(*signs, stated=types)
+    limits = kmh(read(road, default_limit_mps=100 * KMH, reverse=against))
+    # The walk: metre by metre, who states a speed there, and which sign is passed.
+    own = np.zeros(100)
+    for s in sorted({0: 0, **stated}):
+        own[s:] = {0: 0, **stated}[s]
+    now, back, ahead = np.nan, 100.0, 100.0
+    expected = []
+    for s in reversed(range(100)) if against else range(100):
+        passed = posted.get(s + 1 if against else s)
+        if own[s]:
+            ahead = own[s] if np.isnan(now) else ahead  # what is stated first holds before it, too
+            now = back = own[s]
+        elif passed is not None:
+            now = passed or back
+        expected.append(now)
+    np.testing.assert_allclose(limits[:100], np.where(np.isnan(expected), ahead, expected))
+
+
 def test_signs_can_be_left_out(read: Reader) -> None:
     road = signed(sign(20, value="70"))
     with pytest.raises(ModelError, match=r"\(1 speed sign left out\).*--default-limit"):
@@ -220,6 +254,19 @@ def test_signs_that_cannot_be_read_are_told(read: Reader) -> None:
     for metres in (10, 20, 30, 40, 50):
         assert f"at {metres} m of road 1" in told
     assert "at 60 m" not in told
+
+
+def test_a_signal_that_is_broken_does_not_cost_the_road(read: Reader) -> None:
+    light = sign(10, "1000001").replace('s="10"', 's="x"')
+    nowhere = sign(20, value="80").replace('s="20"', 's="nan"')
+    lanes_odd = sign(30, value="80", inside='<validity fromLane="a" toLane=""/>')
+    inside = '<signals><signalReference id="none"/></signals>'
+    road = signed(light, nowhere, lanes_odd, sign(40, value="nan"), stated=inside)
+    route = read(road, default_limit_mps=30.0)
+    assert kmh(route)[[29, 30, 99]] == pytest.approx([108, 80, 80])
+    told = [note.text for note in route.notes]
+    assert any("its s is no number" in text for text in told)
+    assert any("no number at 40 m" in text for text in told)
 
 
 def test_of_two_at_one_place_the_lower_counts_after_the_end_of_another(read: Reader) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -80,7 +81,7 @@ def cut(
     """
     walk = _Walk(default)
     for road, records, passed in zip(roads, stated, signs, strict=True):
-        walk.drive(road, records, list(passed))
+        walk.drive(road, records, passed)
     return walk.cut
 
 
@@ -95,11 +96,13 @@ class _Walk:
     cut: Cut = field(default_factory=Cut)
 
     def drive(self, road: Contents, records: list[Record], signs: list[Sign]) -> None:
-        stretches = list(_stretches(road, records))
-        for index, (start, end, limit) in enumerate(stretches):
-            last = index == len(stretches) - 1
-            here = [s for s in signs if last or _within(s.spot.s_m, start, end, road.leg.against)]
-            signs = signs[len(here) :]
+        stretches = _stretches(road, records)
+        ahead = deque(signs)
+        for index, (start, end, limit) in enumerate(stretches, 1):
+            last = index == len(stretches)
+            here = []
+            while ahead and (last or _within(ahead[0].spot.s_m, start, end, road.leg.against)):
+                here.append(ahead.popleft())
             if limit is None:
                 self._signed(road, start, end, here)
             else:
@@ -145,13 +148,11 @@ class _Walk:
         return self.offset_m + (road.length_m - s_m if road.leg.against else s_m)
 
 
-def _stretches(
-    road: Contents, records: list[Record]
-) -> Iterator[tuple[float, float, Speed | None]]:
-    """Yield start, end and limit of each record, in the order in which they are driven."""
+def _stretches(road: Contents, records: list[Record]) -> list[tuple[float, float, Speed | None]]:
+    """Return start, end and limit of each record, in the order in which they are driven."""
     ends = [*(record.start_m for record in records[1:]), road.length_m]
     ordered = [(r.start_m, end, r.limit) for r, end in zip(records, ends, strict=True)]
-    return reversed(ordered) if road.leg.against else iter(ordered)
+    return ordered[::-1] if road.leg.against else ordered
 
 
 def _within(s_m: float, start_m: float, end_m: float, against: bool) -> bool:

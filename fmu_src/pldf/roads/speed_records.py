@@ -57,11 +57,14 @@ def stated_limits(road: Contents, reader: SpeedReader) -> Stated:
     late: list[Late] = []
     types = _types(road, reader, late)
     sections = _sections(road, reader)
-    lanes = list(_lanes(road, sections, reader, late))
-    starts = {0.0} | {r.start_m for r in types} | {r.start_m for lane in lanes for r in lane}
+    lanes = [list(_lanes(road, section, reader, late)) for section in sections]
+    speeds = [record for of_section in lanes for lane in of_section for record in lane]
+    starts = {0.0} | {record.start_m for record in (*types, *speeds)}
     records: list[Record] = []
     for start in sorted(s for s in starts if 0.0 <= s < road.length_m):
-        stated = [at for at in (_in_force(lane, start) for lane in lanes) if at is not None]
+        here = bisect_right(sections, start, key=lambda section: section.start_m) - 1
+        in_force = [_in_force(lane, start) for lane in lanes[here]] if here >= 0 else []
+        stated = [limit for limit in in_force if limit is not None]
         limit = min(stated) if stated else _in_force(types, start)
         if not records or records[-1].limit != limit:
             records.append(Record(start, limit))
@@ -98,17 +101,17 @@ def _types(road: Contents, reader: SpeedReader, late: list[Late]) -> list[Record
 
 
 def _lanes(
-    road: Contents, sections: list[Section], reader: SpeedReader, late: list[Late]
+    road: Contents, section: Section, reader: SpeedReader, late: list[Late]
 ) -> Iterator[list[Record]]:
-    """Yield the records of every driven lane, each closed at its section's end."""
-    for start, end, lanes in sections:
-        for lane in lanes:
-            records = []
-            for element in lane.all("speed"):
-                at = start + reader.number(road.place, element, "sOffset", 0.0)
-                records.append((Record(at, reader.speed(element, road.place, at)), element))
-            ordered = _in_order(records, start, road, late)
-            yield [r for r in ordered if r.start_m < end] + [Record(end, None)]
+    """Yield the records of every driven lane, each closed at the section's end."""
+    start, end, lanes = section
+    for lane in lanes:
+        records = []
+        for element in lane.all("speed"):
+            at = start + reader.number(road.place, element, "sOffset", 0.0)
+            records.append((Record(at, reader.speed(element, road.place, at)), element))
+        ordered = _in_order(records, start, road, late)
+        yield [r for r in ordered if r.start_m < end] + [Record(end, None)]
 
 
 def _in_order(

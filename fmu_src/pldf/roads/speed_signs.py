@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
 from ..findings import Finding
 from .contents import Contents
-from .options import LimitUnit
+from .options import LimitUnit, RoadOptions
 from .route import LIMIT_MAX_MPS
 from .sign_types import SignType, sign_type
 from .speed_records import Section
-from .speed_values import Speed, SpeedReader, speed_of, unit_named
+from .speed_values import Speed, speed_of, unit_named
 from .spots import Spot, counted, listed, told
 from .xml_tree import Element
 
+_TEXT_MAX: Final = 30  # characters that are told
 _ORIENTATIONS: Final = {False: "+", True: "-"}
 
 
@@ -46,85 +48,74 @@ class SignReader:
 
     Attributes:
         signals: of the file, by id.
-        speeds: what reads positions, and knows the unit of those who state none.
+        options: what a person says; of it, the unit of a sign that states none.
     """
 
     signals: Mapping[str, Element]
-    speeds: SpeedReader
+    options: RoadOptions
     _told: dict[str, list[tuple[Spot, str]]] = field(default_factory=dict)
 
     def signs(self, road: Contents, sections: list[Section]) -> list[Sign]:
         """Return the signs in the order in which they are passed."""
         types = road.leg.road.all("type")
         country = next(filter(None, (e.attributes.get("country") for e in types)), "")
-        facing = self._facing(road, sections)
-        signs = [self._sign(road, element, signal, country) for element, signal in facing]
+        signs = [
+            self._sign(road, element, _Shown.of(signal, country))
+            for element, signal in self._facing(road)
+            if _for_us(element, sections)
+        ]
         return sorted(filter(None, signs), key=_passed(road.leg.against))
 
-    def _facing(self, road: Contents, sections: list[Section]) -> Iterator[tuple[Element, Element]]:
+    def _facing(self, road: Contents) -> Iterator[tuple[Element, Element]]:
         """Yield the elements on the road and the signals that they are or refer to."""
         ours = ("none", "", _ORIENTATIONS[road.leg.against])
         for holder in road.leg.road.all("signals"):
             for element in holder.children:
-                if element.attributes.get("orientation", "").strip().lower() not in ours:
-                    continue
                 signal = element if element.tag == "signal" else None
                 if element.tag == "signalReference":
                     signal = self.signals.get(element.attributes.get("id", ""))
-                if signal is not None and self._for_us(road, element, sections):
+                faces = element.attributes.get("orientation", "").strip().lower() in ours
+                if signal is not None and faces:
                     yield element, signal
 
-    def _for_us(self, road: Contents, element: Element, sections: list[Section]) -> bool:
-        """Tell whether a driven lane is among those for which the sign is valid."""
-        ranges = [
-            sorted(self.speeds.number(road.place, e, name) for name in ("fromLane", "toLane"))
-            for e in element.all("validity")
-        ]
-        if not ranges or not sections:
-            return True
-        s_m = self.speeds.number(road.place, element, "s")
-        section = next((each for each in reversed(sections) if each.start_m <= s_m), sections[0])
-        lanes = [self.speeds.number(road.place, lane, "id") for lane in section.lanes]
-        return any(low <= lane <= high for low, high in ranges for lane in lanes)
-
-    def _sign(self, road: Contents, element: Element, signal: Element, country: str) -> Sign | None:
-        of = {name: signal.attributes.get(name, "").strip() for name in _ATTRIBUTES}
-        kind = sign_type(of["country"] or country, of["type"], of["subtype"], of["value"])
-        s_m = self.speeds.number(road.place, element, "s")
-        spot = Spot(road.place, element.line, min(max(s_m, 0.0), road.length_m))
+    def _sign(self, road: Contents, element: Element, shown: _Shown) -> Sign | None:
+        kind = sign_type(shown.country, shown.kind, shown.subtype, shown.value)
+        unit = unit_named(shown.unit)
+        if kind is None and not (shown.value and unit in ("km/h", "mph")):
+            return None
+        s_m = _number(element, "s")
+        spot = Spot(road.place, element.line, min(max(s_m or 0.0, 0.0), road.length_m))
         if kind is None:
-            unit = unit_named(of["unit"])
-            if unit in ("km/h", "mph") and of["value"]:
-                shown = (
-                    f"type {of['type']} of {of['country'] or 'no country'}: {of['value']} {unit}"
-                )
-                self._tell("not read, with a speed but of an unknown type", spot, shown)
-        elif of["dynamic"].lower() == "yes":
-            self._tell("not read, because it changes (dynamic)", spot, of["type"])
+            told = f"type {shown.kind} of {shown.country or 'no country'}: {shown.value} {unit}"
+            self._tell("not read, with a speed but of an unknown type", spot, told)
+        elif s_m is None:
+            self._tell("not read, because its s is no number", spot, shown.kind)
+        elif shown.dynamic:
+            self._tell("not read, because it changes (dynamic)", spot, shown.kind)
         elif kind.meaning == "implied":
-            self._tell("not read, which implies a limit without showing it", spot, of["type"])
+            self._tell("not read, which implies a limit without showing it", spot, shown.kind)
         elif kind.meaning == "end":
             return Sign(spot, None)
         else:
-            return self._limit(kind, of, spot)
+            return self._limit(kind, shown, spot)
         return None
 
-    def _limit(self, kind: SignType, of: dict[str, str], spot: Spot) -> Sign | None:
-        unit = unit_named(of["unit"]) if of["unit"] else self._unit(kind)
+    def _limit(self, kind: SignType, shown: _Shown, spot: Spot) -> Sign | None:
+        unit = unit_named(shown.unit) if shown.unit else self._unit(kind)
         if kind.number is None or unit is None:
-            what = f"unit {of['unit'][:20]!r}" if unit is None else "no number"
-            self._tell("not read, without a usable speed", spot, f"type {of['type']}, {what}")
+            what = f"unit {shown.unit!r}" if unit is None else "no number"
+            self._tell("not read, without a usable speed", spot, f"type {shown.kind}, {what}")
             return None
         speed = speed_of(kind.number, unit)
-        if kind.doubt:
-            self._tell("read, but in doubt", spot, f"{speed.shown}, {kind.doubt}")
         if speed.mps > LIMIT_MAX_MPS:
             self._tell("not read, without a usable speed", spot, f"{kind.number:g} {unit}")
             return None
+        if kind.doubt:
+            self._tell("read, but in doubt", spot, f"{speed.shown}, {kind.doubt}")
         return Sign(spot, speed)
 
     def _unit(self, kind: SignType) -> LimitUnit:
-        chosen = self.speeds.options.limit_unit
+        chosen = self.options.limit_unit
         return kind.unit if chosen is None or chosen == "m/s" else chosen
 
     def _tell(self, what: str, spot: Spot, shown: str) -> None:
@@ -147,4 +138,48 @@ def _passed(against: bool) -> Callable[[Sign], tuple[float, float]]:
     return lambda sign: (way * sign.spot.s_m, -sign.limit.mps if sign.limit else -math.inf)
 
 
-_ATTRIBUTES: Final = ("country", "type", "subtype", "value", "unit", "dynamic")
+class _Shown(NamedTuple):
+    """What a signal says, as texts of bounded length."""
+
+    country: str
+    kind: str
+    subtype: str
+    value: str
+    unit: str
+    dynamic: bool
+
+    @classmethod
+    def of(cls, signal: Element, country: str) -> _Shown:
+        """Return what ``signal`` says; ``country`` is that of its road."""
+
+        def text(name: str) -> str:
+            return signal.attributes.get(name, "").strip()[:_TEXT_MAX]
+
+        return cls(
+            text("country") or country.strip()[:_TEXT_MAX],
+            text("type"),
+            text("subtype"),
+            text("value"),
+            text("unit"),
+            text("dynamic").lower() == "yes",
+        )
+
+
+def _for_us(element: Element, sections: list[Section]) -> bool:
+    """Tell whether a driven lane is among those for which the sign is valid."""
+    ranges = [(_number(e, "fromLane"), _number(e, "toLane")) for e in element.all("validity")]
+    ends = [sorted((a, b)) for a, b in ranges if a is not None and b is not None]
+    if not ends or not sections:
+        return True
+    here = bisect_right(sections, _number(element, "s") or 0.0, key=lambda each: each.start_m) - 1
+    lanes = [_number(lane, "id") for lane in sections[max(here, 0)].lanes]
+    return any(low <= lane <= high for low, high in ends for lane in lanes if lane is not None)
+
+
+def _number(element: Element, name: str) -> float | None:
+    """Return an attribute as a number, None if it is none: a sign is not worth a refusal."""
+    try:
+        value = float(element.attributes.get(name, ""))
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None

@@ -67,7 +67,7 @@ def limits_along(
         ModelError: unusable speeds, all of them; or nothing is stated and there is no default.
     """
     reader = SpeedReader(options)
-    sign_reader = SignReader(signals, reader)
+    sign_reader = SignReader(signals, options)
     stated = [stated_limits(road, reader) for road in roads]
     signs = [
         sign_reader.signs(road, each.sections) for road, each in zip(roads, stated, strict=True)
