@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..kernel.arrays import FloatArray
-from .route import left_values, right_values
+from .per_metre import left_values, right_values
 
 # Rows of the knots' array.
 S, CURVATURE, LIMIT, GRADE, X, Y = range(6)

@@ -64,7 +64,7 @@ class Geometries:
             GeometryError: a polynomial that is no road.
         """
         which, ds = np.asarray(which, dtype=np.intp), np.asarray(ds, dtype=np.float64)
-        start, rate = self.curvature_start_per_m[which], self._rates()[which]
+        start, rate = self.curvature_start_per_m[which], self._rates(which)
         curvature = start + rate * ds
         turn = _turn(start, rate, ds)
         u, v = ds.copy(), np.zeros_like(ds)
@@ -80,12 +80,15 @@ class Geometries:
         at = np.flatnonzero(cubic != STRAIGHT)
         if len(at):
             curvature[at], turn[at], u[at], v[at] = self.polynomials.points(cubic[at], ds[at])
-        cos, sin = np.cos(self.heading_rad)[which], np.sin(self.heading_rad)[which]
+        heading = self.heading_rad[which]
+        cos, sin = np.cos(heading), np.sin(heading)
         x, y = self.x_m[which] + u * cos - v * sin, self.y_m[which] + u * sin + v * cos
-        return Points(curvature, self.heading_rad[which] + turn, x, y)
+        return Points(curvature, heading + turn, x, y)
 
-    def _rates(self) -> FloatArray:
-        return (self.curvature_end_per_m - self.curvature_start_per_m) / self.length_m
+    def _rates(self, which: Indices) -> FloatArray:
+        change = self.curvature_end_per_m[which] - self.curvature_start_per_m[which]
+        rates: FloatArray = change / self.length_m[which]
+        return rates
 
     def _arcs(self, which: Indices, ds: FloatArray) -> NDArray[np.complex128]:
         half_turn = 0.5 * self.curvature_start_per_m[which] * ds
@@ -95,7 +98,7 @@ class Geometries:
     def _spirals(self, which: Indices, ds: FloatArray) -> NDArray[np.complex128]:
         """Return the Fresnel integrals, summed metre by metre."""
         distinct, group = distinct_runs(which)
-        start, rate = self.curvature_start_per_m[distinct], self._rates()[distinct]
+        start, rate = self.curvature_start_per_m[distinct], self._rates(distinct)
         floor = np.floor(ds)
         metres = np.zeros(len(distinct), dtype=np.intp)
         np.maximum.at(metres, group, floor.astype(np.intp) + 1)

@@ -54,7 +54,8 @@ def joined(stretches: list[Stretch], notes: list[Finding]) -> tuple[FloatArray, 
         joints += [_link(before, behind), behind.joints]
     if faults:
         raise ModelError("\n".join(map(str, faults)))
-    knots = np.concatenate([*parts, stretches[-1].columns], axis=1)
+    parts.append(stretches[-1].columns)
+    knots = np.concatenate(parts, axis=1) if len(parts) > 1 else parts[0]
     for stretch, gap in moves:
         _blend(knots, float(stretch.columns[S, 0]), gap)
     _tell(moves, notes)

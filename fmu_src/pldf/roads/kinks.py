@@ -16,7 +16,7 @@ import numpy as np
 
 from ..kernel.arrays import FloatArray
 from .bending import CURVATURE, Boxes, S, bent, spans_of
-from .route import left_values, right_values
+from .per_metre import left_values, right_values
 from .sampling import Joints
 
 CAR_LENGTH_M: Final = 5.0

@@ -31,8 +31,6 @@ class Pieces(NamedTuple):
     limit_mps: FloatArray
     start_m: FloatArray  # on the route
     end_m: FloatArray
-    step_m: FloatArray  # of the knots inside
-    before: FloatArray  # steps up to the start
     counts: Indices  # knots
     polynomial: NDArray[np.bool_]
 
@@ -65,14 +63,18 @@ def pieces_of(road: Contents, limits: Limits, offset_m: float) -> Pieces:
         ends = (road.length_m - borders[:0:-1], road.length_m - borders[-2::-1])
     geometry = _latest(geometries.start_m, middle)
     polynomial = geometries.cubic[geometry] != STRAIGHT
-    step_m = np.where(polynomial, _POLYNOMIAL_STEP_M, _STEP_M)
     start_m, end_m = offset_m + ends[0], offset_m + ends[1]
-    before = np.floor(start_m / step_m)
-    inside = np.maximum(np.ceil(end_m / step_m) - before - 1.0, 0.0)
+    step_m = _step_m(polynomial)
+    inside = np.maximum(np.ceil(end_m / step_m) - np.floor(start_m / step_m) - 1.0, 0.0)
     return Pieces(
         geometry, _latest(road.grades[:, 0], middle), limit_mps[_latest(starts, middle)],
-        start_m, end_m, step_m, before, inside.astype(np.intp) + 2, polynomial,
+        start_m, end_m, inside.astype(np.intp) + 2, polynomial,
     )  # fmt: skip
+
+
+def _step_m(polynomial: NDArray[np.bool_]) -> FloatArray:
+    """Return how far apart the knots inside of pieces are."""
+    return np.where(polynomial, _POLYNOMIAL_STEP_M, _STEP_M)
 
 
 def _borders(road: Contents, starts: FloatArray) -> FloatArray:
@@ -104,10 +106,11 @@ def knots_of(road: Contents, pieces: Pieces, offset_m: float) -> Iterator[Knots]
         piece = int(np.searchsorted(begins, stop, side="left")) - 1
         if together[piece]:
             stop = int(begins[piece] + pieces.counts[piece])
-        on = np.repeat(
-            np.arange(len(begins)),
-            np.clip(begins + pieces.counts, first, stop) - np.clip(begins, first, stop),
+        some = slice(int(np.searchsorted(begins, first, side="right")) - 1, piece + 1)
+        inside = np.minimum(begins[some] + pieces.counts[some], stop) - np.maximum(
+            begins[some], first
         )
+        on = np.repeat(np.arange(some.start, some.stop), inside)
         yield _computed(road, pieces, offset_m, on, np.arange(first, stop) - begins[on])
         first = stop
 
@@ -116,8 +119,9 @@ def _computed(
     road: Contents, pieces: Pieces, offset_m: float, piece: Indices, number: Indices
 ) -> Knots:
     """Return the knots with these numbers, from 0 on, of these pieces."""
-    route_m = (pieces.before[piece] + number) * pieces.step_m[piece]
-    route_m = np.where(number == 0, pieces.start_m[piece], route_m)
+    start_m, step_m = pieces.start_m[piece], _step_m(pieces.polynomial[piece])
+    route_m = (np.floor(start_m / step_m) + number) * step_m
+    route_m = np.where(number == 0, start_m, route_m)
     route_m = np.where(number == pieces.counts[piece] - 1, pieces.end_m[piece], route_m)
     against = road.leg.against
     s_m = road.length_m - (route_m - offset_m) if against else route_m - offset_m

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import math
 from array import array
+from collections.abc import Callable
 from typing import Final, NamedTuple
+from xml.parsers import expat
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,31 +67,27 @@ class _Numbers:
     """Attributes of many elements as one array."""
 
     def __init__(self) -> None:
+        self.texts: list[str | None] = []  # those that wait
         self._values = array("d")
-        self._texts: list[str | None] = []
         self.none: dict[int, str | None] = {}  # the text of those that are no number
-
-    def add(self, attributes: dict[str, str], names: tuple[str, ...]) -> None:
-        self._texts += map(attributes.get, names)
-        if len(self._texts) > _AT_ONCE:
-            self._convert()
 
     def all(self) -> FloatArray:
         """Return all; nothing can be added any more."""
-        if self._texts:
-            self._convert()
+        if self.texts:
+            self.convert()
         return np.frombuffer(self._values) if self._values else np.empty(0)
 
-    def _convert(self) -> None:
+    def convert(self) -> None:
+        """Make numbers of the texts that wait."""
         try:
-            new = array("d", map(float, self._texts))  # type: ignore[arg-type]
+            new = array("d", map(float, self.texts))  # type: ignore[arg-type]
         except (ValueError, TypeError):
-            new = array("d", map(_number, self._texts))
+            new = array("d", map(_number, self.texts))
         for at in np.flatnonzero(~np.isfinite(new)):
-            text = self._texts[at]
+            text = self.texts[at]
             self.none[len(self._values) + int(at)] = None if text is None else text[:_TEXT_MAX]
         self._values += new
-        self._texts.clear()
+        self.texts.clear()
 
 
 def _number(text: str | None) -> float:
@@ -97,6 +95,11 @@ def _number(text: str | None) -> float:
         return math.nan if text is None else float(text)
     except ValueError:
         return math.nan
+
+
+def _param_poly3(attributes: dict[str, str]) -> int:
+    by_arc_length = attributes.get("pRange", "").lower() == "arclength"
+    return ARC_LENGTH if by_arc_length else NORMALIZED
 
 
 class GeometryTable:
@@ -113,33 +116,73 @@ class GeometryTable:
     def __len__(self) -> int:
         return len(self._kind)
 
-    def add(self, attributes: dict[str, str], line: int) -> None:
-        """Begin a ``geometry``."""
-        self._poses.add(attributes, POSE)
-        self._kind.append(NO_SHAPE)
-        self._line.append(line)
-        self._shape_line.append(line)
+    def handlers(
+        self,
+        parser: expat.XMLParserType,
+        skipped_lines: int,
+        check_depth: Callable[[int], None],
+        closed: Callable[[], None],
+    ) -> tuple[Callable[[str, dict[str, str]], None], Callable[[str], None]]:
+        """Return what handles the elements inside a ``planView``, and their ends.
 
-    def shape(self, tag: str, attributes: dict[str, str], line: int) -> None:
-        """Give the last geometry its shape, unless ``tag`` is none or it has one."""
-        kind = _KINDS.get(tag, NO_SHAPE)
-        if kind == NO_SHAPE or self._kind[-1] != NO_SHAPE:
-            return
-        if kind == NORMALIZED and attributes.get("pRange", "normalized").lower() == "arclength":
-            kind = ARC_LENGTH
-        self._kind[-1] = kind
-        self._shape_line[-1] = line
-        if kind != LINE:
-            self._numbers.add(attributes, _SHAPES[kind][1])
+        They are called two million times for a city, so they call nothing that can be at hand. Of
+        a geometry with two shapes the first counts.
+
+        Args:
+            parser: of the file.
+            skipped_lines: before what the parser got.
+            check_depth: is asked about elements inside others, with how many these are.
+            closed: is called at the end of the ``planView``.
+        """
+        kinds, lines, shape_lines = self._kind, self._line, self._shape_line
+        poses, numbers = self._poses.texts, self._numbers.texts
+        depth, is_geometry = 0, False
+
+        def start(tag: str, attributes: dict[str, str]) -> None:
+            nonlocal depth, is_geometry
+            depth += 1
+            if depth == 1:
+                is_geometry = tag.rpartition(":")[2] == "geometry"
+                if is_geometry:
+                    poses.extend(map(attributes.get, POSE))
+                    kinds.append(NO_SHAPE)
+                    lines.append(parser.CurrentLineNumber + skipped_lines)
+                    shape_lines.append(0)
+                    if len(poses) > _AT_ONCE:
+                        self._convert()
+            elif depth == 2 and is_geometry:
+                kind = _KINDS.get(tag.rpartition(":")[2], NO_SHAPE)
+                if kinds[-1] == NO_SHAPE != kind:
+                    if kind == NORMALIZED:
+                        kind = _param_poly3(attributes)
+                    kinds[-1] = kind
+                    shape_lines[-1] = parser.CurrentLineNumber + skipped_lines
+                    numbers.extend(map(attributes.get, _SHAPES[kind][1]))
+            else:
+                check_depth(depth)
+
+        def end(_: str) -> None:
+            nonlocal depth
+            if depth:
+                depth -= 1
+            else:
+                closed()
+
+        return start, end
 
     def rows(self, plans: list[PlanView]) -> Rows:
         """Return the geometries of ``plans``."""
         row = np.concatenate([np.arange(plan.first, plan.stop) for plan in plans])
-        kind = np.frombuffer(self._kind, dtype=np.int8)[row]
-        pose = self._poses.all().reshape(-1, len(POSE))[row]
-        line = np.frombuffer(self._line, dtype=np.intc)[row]
-        shape_line = np.frombuffer(self._shape_line, dtype=np.intc)[row]
-        return Rows(pose, kind, line, shape_line, self._first_numbers()[row], row)
+        # Those of one plan are not copied.
+        where = slice(plans[0].first, plans[0].stop) if len(plans) == 1 else row
+        return Rows(
+            self._poses.all().reshape(-1, len(POSE))[where],
+            np.frombuffer(self._kind, dtype=np.int8)[where],
+            np.frombuffer(self._line, dtype=np.intc)[where],
+            np.frombuffer(self._shape_line, dtype=np.intc)[where],
+            self._first_numbers()[where],
+            row,
+        )
 
     def numbers(self, rows: Rows, count: int) -> FloatArray:
         """Return the ``count`` numbers of each shape, [n, count]."""
@@ -173,6 +216,10 @@ class GeometryTable:
         missing = "no line, arc, spiral, poly3 or paramPoly3 in this geometry"
         found += [(int(line), missing) for line in rows.line[rows.kind == NO_SHAPE]]
         return found
+
+    def _convert(self) -> None:
+        self._poses.convert()
+        self._numbers.convert()
 
     def _first_numbers(self) -> Indices:
         if self._first_number is None:

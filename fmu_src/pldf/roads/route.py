@@ -14,6 +14,7 @@ from ..errors import ModelError
 from ..findings import Finding
 from ..kernel.arrays import FloatArray, RouteArrays
 from ..kernel.units import KMH_PER_MPS
+from .per_metre import at_nodes, lowest_limit, sharpest_curve
 
 LENGTH_MIN_M: Final = 2.0
 LENGTH_MAX_M: Final = 1e7  # ten times across a continent; a slip of a digit must not fill memory
@@ -148,13 +149,10 @@ def route_arrays(route: Route) -> RouteArrays:
     """
     nodes = np.arange(route.nodes, dtype=np.float64)
     s_m = route.s_m
-    return RouteArrays(
-        limit_mps=_repeat_last(_lowest_limit(s_m, route.speed_limit_mps, nodes)),
-        curvature_per_m=_repeat_last(sharpest_curve(s_m, route.curvature_per_m, nodes)),
-        grade=right_values(s_m, route.grade, nodes),
-        x_m=right_values(s_m, route.x_m, nodes),
-        y_m=right_values(s_m, route.y_m, nodes),
-    )
+    limit_mps = _repeat_last(lowest_limit(s_m, route.speed_limit_mps, nodes))
+    curvature_per_m = _repeat_last(sharpest_curve(s_m, route.curvature_per_m, nodes))
+    grade, x_m, y_m = at_nodes(s_m, [route.grade, route.x_m, route.y_m], nodes)
+    return RouteArrays(limit_mps, curvature_per_m, grade, x_m, y_m)
 
 
 def fingerprint(route: Route) -> str:
@@ -164,59 +162,15 @@ def fingerprint(route: Route) -> str:
     curvature (1e-6 1/m), as little-endian 64-bit integers; neither the grade nor the line.
     """
     arrays = route_arrays(route)
-    digest = hashlib.sha256(_rounded(np.array([route.length_m]), 1e3))
-    digest.update(_rounded(np.asarray(arrays.limit_mps), 1e3))
-    digest.update(_rounded(np.asarray(arrays.curvature_per_m), 1e6))
+    digest = hashlib.sha256(_rounded(np.array([route.length_m]), 1e3).data)
+    digest.update(_rounded(np.asarray(arrays.limit_mps), 1e3).data)
+    digest.update(_rounded(np.asarray(arrays.curvature_per_m), 1e6).data)
     return digest.hexdigest()[:16]
 
 
-def _rounded(values: FloatArray, scale: float) -> bytes:
-    return np.rint(values * scale).astype("<i8").tobytes()
+def _rounded(values: FloatArray, scale: float) -> NDArray[np.int64]:
+    return np.rint(values * scale).astype("<i8")
 
 
 def _repeat_last(cells: FloatArray) -> FloatArray:
     return np.append(cells, cells[-1])
-
-
-def _lowest_limit(s_m: FloatArray, limit: FloatArray, nodes: FloatArray) -> FloatArray:
-    lowest = limit[np.searchsorted(s_m, nodes[:-1], side="right") - 1]
-    # The first knot of a jump is in force over no length at all: it does not count.
-    at = np.flatnonzero((s_m[:-1] < s_m[1:]) & (s_m[:-1] < nodes[-1]))
-    np.minimum.at(lowest, s_m[at].astype(np.intp), limit[at])
-    return lowest
-
-
-def sharpest_curve(s_m: FloatArray, curvature: FloatArray, nodes: FloatArray) -> FloatArray:
-    """Return the largest absolute curvature in each cell between the nodes 0, 1, 2, ..."""
-    # |curvature| is convex between knots: its maximum lies at a knot or at an end of the cell.
-    sharpest = np.maximum(
-        np.abs(right_values(s_m, curvature, nodes)[:-1]),
-        np.abs(left_values(s_m, curvature, nodes[1:])),
-    )
-    at = np.flatnonzero((np.floor(s_m) < s_m) & (s_m < nodes[-1]))
-    np.maximum.at(sharpest, s_m[at].astype(np.intp), np.abs(curvature[at]))
-    return sharpest
-
-
-def right_values(s_m: FloatArray, values: FloatArray, at: FloatArray) -> FloatArray:
-    """Linear interpolation; behind the jump where one lies exactly at ``at``."""
-    before = np.minimum(np.searchsorted(s_m, at, side="right") - 1, len(s_m) - 1)
-    return _between(s_m, values, at, before)
-
-
-def left_values(s_m: FloatArray, values: FloatArray, at: FloatArray) -> FloatArray:
-    """The same, before the jump."""
-    after = np.searchsorted(s_m, at, side="left")
-    return np.where(
-        s_m[after] == at, values[after], _between(s_m, values, at, np.maximum(after - 1, 0))
-    )
-
-
-def _between(
-    s_m: FloatArray, values: FloatArray, at: FloatArray, before: NDArray[np.intp]
-) -> FloatArray:
-    after = np.minimum(before + 1, len(s_m) - 1)
-    span = s_m[after] - s_m[before]
-    share = np.divide(at - s_m[before], span, out=np.zeros_like(at), where=span > 0.0)
-    blend: FloatArray = values[before] * (1.0 - share) + values[after] * share
-    return blend

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..kernel.arrays import FloatArray
 from .bending import CURVATURE, S, bent, spans_of
 from .kinks import CAR_LENGTH_M, spread
-from .route import left_values, right_values, sharpest_curve
+from .per_metre import left_values, right_values, sharpest_curve
 
 # A stretch of a car's length may touch one cell more than it has metres.
 _CELLS: Final = int(CAR_LENGTH_M) + 1

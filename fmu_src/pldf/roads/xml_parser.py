@@ -75,9 +75,12 @@ class _Builder:
         self.parser = expat.ParserCreate()
         self._open = [self.top]
         self._table = GeometryTable()
-        self._inside = 0  # elements open in a subtree with handlers of its own
+        self._inside = 0  # elements open in one that is skipped
         self._skipped_lines = skipped_lines
         self._path = path
+        self._geometries = self._table.handlers(
+            self.parser, skipped_lines, self._check_depth, self._end_plan_view
+        )
         self._handle(self._start, self._end)
 
     def _handle(
@@ -96,7 +99,7 @@ class _Builder:
             self._handle(self._start_skipped, self._end_skipped)
             return
         if tag == "planView":
-            self._handle(self._start_geometry, self._end_plan_view)
+            self._handle(*self._geometries)
             self._plan = PlanView(attributes, self._line(), self._table)
             element: Element = self._plan
         else:
@@ -107,8 +110,8 @@ class _Builder:
     def _end(self, _: str) -> None:
         self._open.pop()
 
-    def _check_depth(self) -> None:
-        if len(self._open) + self._inside > _DEPTH_MAX:  # told at once, not when memory is full
+    def _check_depth(self, inside: int = 0) -> None:
+        if len(self._open) + inside > _DEPTH_MAX:  # told at once, not when memory is full
             outer = self._open[-1]
             raise ModelError(
                 f"{self._path}, line {self._line()}: an element inside {_DEPTH_MAX} others,"
@@ -118,7 +121,7 @@ class _Builder:
 
     def _start_skipped(self, _tag: str, _attributes: dict[str, str]) -> None:
         self._inside += 1
-        self._check_depth()
+        self._check_depth(self._inside)
 
     def _end_skipped(self, _: str) -> None:
         if self._inside:
@@ -126,21 +129,7 @@ class _Builder:
         else:
             self._handle(self._start, self._end)
 
-    def _start_geometry(self, tag: str, attributes: dict[str, str]) -> None:
-        self._inside += 1
-        if self._inside == 1:
-            self._is_geometry = tag.rpartition(":")[2] == "geometry"
-            if self._is_geometry:
-                self._table.add(attributes, self._line())
-        elif self._inside == 2 and self._is_geometry:
-            self._table.shape(tag.rpartition(":")[2], attributes, self._line())
-        else:
-            self._check_depth()
-
-    def _end_plan_view(self, _: str) -> None:
-        if self._inside:
-            self._inside -= 1
-            return
+    def _end_plan_view(self) -> None:
         self._handle(self._start, self._end)
         self._open.pop()
         self._plan.stop = len(self._table)
