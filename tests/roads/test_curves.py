@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from opendrive_text import geometry, road
 from pldf.roads import Route, open_route, packed_route, read_route, route_arrays, write_route_csv
 from pldf.roads.curves import judged
-from pldf.roads.geometry import LinearCurvature, Pose
+from pldf.roads.geometry import Geometries
 from pldf.roads.sampling import NO_JOINTS, Joints
 
 Reader = Callable[..., Route]
@@ -306,9 +306,8 @@ def test_whatever_is_repaired_only_the_curvature_changes(made: tuple[Array, Join
 
 def test_headings_of_geometries_meet_where_the_road_is_clean() -> None:
     """The joints are told from headings: those of a spiral against its own integral."""
-    piece = LinearCurvature(Pose(1.0, 2.0, 0.3), 41.7, 0.001, -0.02)
     fine = np.linspace(0.0, 41.7, 100_001)
-    bend = 0.5 * (piece.curvature(fine)[1:] + piece.curvature(fine)[:-1])
-    assert piece.heading(fine[-1:])[0] == pytest.approx(
-        0.3 + np.sum(bend * np.diff(fine)), abs=1e-9
-    )
+    piece = Geometries.linear(1.0, 2.0, 0.3, 41.7, 0.001, -0.02)
+    points = piece.points(np.zeros(len(fine), dtype=np.intp), fine)
+    turned = np.trapezoid(points.curvature_per_m, fine)
+    assert points.heading_rad[-1] == pytest.approx(0.3 + turned, abs=1e-9)
