@@ -275,6 +275,26 @@ def test_of_two_at_one_place_the_lower_counts_after_the_end_of_another(read: Rea
     assert kmh(read(road))[[49, 50]] == pytest.approx([100, 30])
 
 
+def test_a_sign_where_what_is_stated_ends_counts(read: Reader) -> None:
+    until = '<type s="0"><speed max="100" unit="km/h"/></type><type s="50"/>'
+    assert kmh(read(signed(sign(50, value="30"), stated=until)))[[49, 50]] == pytest.approx(
+        [100, 30]
+    )
+    behind = '<type s="0"/><type s="50"><speed max="100" unit="km/h"/></type>'
+    road = signed(sign(50, value="30", orientation="-"), stated=behind)
+    assert kmh(read(road, reverse=True))[[49, 50]] == pytest.approx([100, 30])
+
+
+def test_a_supplementary_sign_at_the_same_post_is_told(read: Reader) -> None:
+    wet = sign(20, "1053", subtype="35", country="DE")
+    route = read(signed(sign(20.2, value="80"), wet, sign(60, value="50")))
+    told = [note for note in route.notes if "in doubt" in note.text]
+    assert [note.severity for note in told] == ["warning"]
+    assert "1 speed sign read, but in doubt: 80 km/h at 20.2 m of road 1" in told[0].text
+    assert told[0].consequence == "the supplementary sign 1053-35 restricts it"
+    assert not read(signed(sign(20, value="100"), wet, stated=RIGHT_100)).notes
+
+
 def test_the_page_on_roads_names_the_countries_whose_signs_are_read() -> None:
     page = (Path(__file__).parents[2] / "docs" / "roads.md").read_text(encoding="utf-8")
     section = page.split("## Limits and signs")[1].split("\n## ")[0]

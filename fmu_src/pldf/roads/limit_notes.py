@@ -81,6 +81,11 @@ def notes_on_signs(parts: Cut) -> Iterator[Finding]:
     if read:
         text = f"{counted(len(read), 'speed sign')} read where no speed is stated: {_shown(read)}"
         yield told("note", [s.spot for s in read], text, way_out="--no-signs leaves them out")
+    doubtful = [sign for sign in read if sign.doubt]
+    if doubtful:
+        text = f"{counted(len(doubtful), 'speed sign')} read, but in doubt: {_shown(doubtful)}"
+        doubts = listed(sorted({sign.doubt for sign in doubtful}))
+        yield told("warning", [s.spot for s in doubtful], text, doubts)
     unlike = [unread for unread in parts.unread if _contradicts(unread, parts.spans)]
     if unlike:
         signs = [unread.sign for unread in unlike]

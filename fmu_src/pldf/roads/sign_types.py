@@ -105,8 +105,7 @@ def sign_type(country: str, kind: str, subtype: str, value: str) -> SignType | N
         subtype: attribute ``subtype``; -1 and none are none.
         value: attribute ``value``; it counts if it is a number above 0.
     """
-    code = "".join(country.split()).upper()
-    code = _CODES.get(code, code)
+    code = _code(country)
     named = _full_code(kind, subtype)
     for row in _rows(code):
         found = re.fullmatch(row.pattern, named)
@@ -119,9 +118,21 @@ def sign_type(country: str, kind: str, subtype: str, value: str) -> SignType | N
     return None
 
 
+def supplementary(country: str, kind: str, subtype: str) -> str:
+    """Return the code of a German supplementary sign (when wet, at night), empty: none."""
+    named = _full_code(kind, subtype)
+    is_german = _GERMAN[0] in _rows(_code(country))[:1]
+    return named if is_german and re.fullmatch(r"10[0-6]\d(?:-\d+)?", named) else ""
+
+
 def country_rows() -> dict[str, tuple[str, ...]]:
     """Return the patterns of each country, for the documentation's test."""
     return {country: tuple(row.pattern for row in rows) for country, rows in _ROWS.items()}
+
+
+def _code(country: str) -> str:
+    code = "".join(country.split()).upper()
+    return _CODES.get(code, code)
 
 
 def _rows(country: str) -> tuple[_Row, ...]:

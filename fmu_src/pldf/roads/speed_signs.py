@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple
@@ -12,13 +12,14 @@ from ..findings import Finding
 from .contents import Contents
 from .options import LimitUnit, RoadOptions
 from .route import LIMIT_MAX_MPS
-from .sign_types import SignType, sign_type
+from .sign_types import SignType, sign_type, supplementary
 from .speed_records import Section
 from .speed_values import Speed, speed_of, unit_named
 from .spots import Spot, counted, listed, told
 from .xml_tree import Element
 
 _TEXT_MAX: Final = 30  # characters that are told
+_POST_M: Final = 0.5
 _ORIENTATIONS: Final = {False: "+", True: "-"}
 
 
@@ -28,10 +29,12 @@ class Sign(NamedTuple):
     Attributes:
         spot: where it stands, within the road.
         limit: what it begins; None: it ends a limit.
+        doubt: what contradicts or restricts it, empty: nothing.
     """
 
     spot: Spot
     limit: Speed | None
+    doubt: str = ""
 
 
 def signals_of(root: Element) -> dict[str, Element]:
@@ -59,12 +62,15 @@ class SignReader:
         """Return the signs in the order in which they are passed."""
         types = road.leg.road.all("type")
         country = next(filter(None, (e.attributes.get("country") for e in types)), "")
-        signs = [
-            self._sign(road, element, _Shown.of(signal, country))
+        facing = [
+            (element, _Shown.of(signal, country))
             for element, signal in self._facing(road)
             if _for_us(element, sections)
         ]
-        return sorted(filter(None, signs), key=_passed(road.leg.against))
+        plates = _plates(facing)
+        signs = (self._sign(road, element, shown) for element, shown in facing)
+        read = [_under_plates(sign, plates) for sign in signs if sign is not None]
+        return sorted(read, key=_passed(road.leg.against))
 
     def _facing(self, road: Contents) -> Iterator[tuple[Element, Element]]:
         """Yield the elements on the road and the signals that they are or refer to."""
@@ -110,9 +116,7 @@ class SignReader:
         if speed.mps > LIMIT_MAX_MPS:
             self._tell("not read, without a usable speed", spot, f"{kind.number:g} {unit}")
             return None
-        if kind.doubt:
-            self._tell("read, but in doubt", spot, f"{speed.shown}, {kind.doubt}")
-        return Sign(spot, speed)
+        return Sign(spot, speed, kind.doubt)
 
     def _unit(self, kind: SignType) -> LimitUnit:
         chosen = self.options.limit_unit
@@ -163,6 +167,23 @@ class _Shown(NamedTuple):
             text("unit"),
             text("dynamic").lower() == "yes",
         )
+
+
+def _plates(facing: list[tuple[Element, _Shown]]) -> list[tuple[float, str]]:
+    """Return place and code of the supplementary signs, in order of s."""
+    codes = [
+        (_number(element, "s"), supplementary(shown.country, shown.kind, shown.subtype))
+        for element, shown in facing
+    ]
+    return sorted((s_m, code) for s_m, code in codes if s_m is not None and code)
+
+
+def _under_plates(sign: Sign, plates: list[tuple[float, str]]) -> Sign:
+    """Return the sign in doubt if a supplementary sign hangs on its post."""
+    first = bisect_left(plates, (sign.spot.s_m - _POST_M, ""))
+    if sign.limit is None or first == len(plates) or plates[first][0] > sign.spot.s_m + _POST_M:
+        return sign
+    return sign._replace(doubt=f"the supplementary sign {plates[first][1]} restricts it")
 
 
 def _for_us(element: Element, sections: list[Section]) -> bool:
