@@ -16,26 +16,20 @@ from ...roads import Route
 from ...roads.route import Mark
 from ...route_facts import BINDING_MPS, RouteFacts
 from .. import palette
-from ..scene import Axis, Element, Line, Note, Panel, Scene, Stroke
-from .labels import Labels, Rectangle
+from ..scene import Line, Note, Scene, Stroke
+from .frame import Frame, frame_around
+from .labels import Labels
 
-_WIDTH_IN: Final = 10.0  # of the map on paper, without its axis
-_HEIGHTS_IN: Final = (2.0, 6.0)  # least and most, of the route alone
-_MARGIN_IN: Final = 0.45  # around the route, for texts
-_FOOT_IN: Final = 0.45  # below it, for scale and north
 _POINTS: Final = 2500  # along the route: more does not show
 _CLASSES_KMH: Final = (30.0, 50.0, 70.0, 90.0, 110.0, 130.0)  # of many limits
 _ARROWS: Final = 7
 _AROUND_IN: Final = 0.07  # over which the direction is taken
 _APART_IN: Final = 0.12  # of marks, at least
 _TEXTS_MAX: Final = 60  # of a kind for which room is looked for
-_KM_FROM_M: Final = 20e3  # from this extent on the axes are in km
 
 _CURVE: Final = Stroke(palette.ORANGE, 11.0, opacity=0.45)
-_ARROW: Final = Stroke(palette.BLACK, 1.3)
-_SCALE: Final = Stroke(palette.BLACK, 1.5)
 _SIGN: Final = Stroke(palette.BLACK, 0.0, mark="diamond", mark_pt=4.5, hollow=True)
-_ROAD: Final = Stroke(palette.GREY, 0.0, mark="square", mark_pt=3.0)
+_ROAD: Final = Stroke(palette.GREY, 0.0, mark="square", mark_pt=4.0, hollow=True)
 _START: Final = Stroke(palette.BLACK, 0.0, mark="circle", mark_pt=8.0, hollow=True)
 _END: Final = Stroke(palette.BLACK, 0.0, mark="square", mark_pt=7.0)
 
@@ -45,18 +39,17 @@ class _Map:
     """The route's line at places along it, in the unit of the axes.
 
     Attributes:
+        facts: of the route.
+        frame: the axes around it.
         s_m: the places; limits and curves begin and end at such.
         x, y: where they are.
-        unit: of the axes.
-        per_in: length of an inch on paper.
     """
 
     facts: RouteFacts
+    frame: Frame
     s_m: FloatArray
     x: FloatArray
     y: FloatArray
-    unit: str
-    per_in: float
 
     def at(self, s_m: float) -> tuple[float, float]:
         """Return where the place ``s_m`` is."""
@@ -66,7 +59,7 @@ class _Map:
         """Return the direction of driving around there, as a unit vector."""
         around = np.hypot(self.x - self.at(s_m)[0], self.y - self.at(s_m)[1])
         here = int(np.searchsorted(self.s_m, s_m))
-        far = around > _AROUND_IN * self.per_in
+        far = around > _AROUND_IN * self.frame.per_in
         before = int(np.flatnonzero(far[:here])[-1]) if np.any(far[:here]) else 0
         after = here + int(np.argmax(far[here:])) if np.any(far[here:]) else len(self.s_m) - 1
         east, north = (float(v[after] - v[before]) for v in (self.x, self.y))
@@ -78,34 +71,17 @@ def plan(facts: RouteFacts) -> Scene | None:
     """Return the plan view, None for a route whose file has no x and y."""
     if not facts.route.has_line:
         return None
-    shown, x, y = _map(facts)
-    lines = (*_limits(shown), *_curves(shown), *_places(shown), *_arrows(shown))
-    inside = Rectangle(*x.ends, y.ends[0] + _FOOT_IN * shown.per_in, y.ends[1])
-    elements = (*lines, *_scale_and_north(shown, x, y), *_texts(shown, inside))
-    height_in = (y.ends[1] - y.ends[0]) / shown.per_in
-    title = f"{facts.route.name}: plan view"
-    return Scene((Panel(elements, x, y, height_in, title),), to_scale=True)
+    shown = _map(facts)
+    lines = (*_limits(shown), *_curves(shown), *_places(shown), _arrows(shown))
+    return shown.frame.scene((*lines, *_texts(shown)), f"{facts.route.name}: plan view")
 
 
-def _map(facts: RouteFacts) -> tuple[_Map, Axis, Axis]:
-    """Return the line and the axes around it."""
+def _map(facts: RouteFacts) -> _Map:
     route = facts.route
     s_m = _places_along(facts)
-    x, y = np.interp(s_m, route.s_m, route.x_m), np.interp(s_m, route.s_m, route.y_m)
-    in_km = max(np.ptp(x), np.ptp(y)) >= _KM_FROM_M
-    factor, unit = (1e-3, "km") if in_km else (1.0, "m")
-    x, y = factor * x, factor * y
-    across, up = float(np.ptp(x)), float(np.ptp(y))
-    per_in = max(across / (_WIDTH_IN - 2 * _MARGIN_IN), up / _HEIGHTS_IN[1], 1e-2)
-    height = max(up, _HEIGHTS_IN[0] * per_in) + 2 * _MARGIN_IN * per_in
-    middle_x, middle_y = 0.5 * float(np.min(x) + np.max(x)), 0.5 * float(np.min(y) + np.max(y))
-    half = 0.5 * _WIDTH_IN * per_in
-    low = middle_y - 0.5 * height
-    axes = (
-        Axis("x, east", unit, low=middle_x - half, high=middle_x + half, grid=False),
-        Axis("y, north", unit, low=low - _FOOT_IN * per_in, high=low + height, grid=False),
-    )
-    return _Map(facts, s_m, x, y, unit, per_in), *axes
+    x_m, y_m = (np.interp(s_m, route.s_m, values) for values in (route.x_m, route.y_m))
+    frame = frame_around(x_m, y_m)
+    return _Map(facts, frame, s_m, frame.factor * x_m, frame.factor * y_m)
 
 
 def _places_along(facts: RouteFacts) -> FloatArray:
@@ -120,7 +96,7 @@ def _limits(shown: _Map) -> Iterator[Line]:
     """Yield a line per limit, the slowest first; each ends where the next limit begins."""
     starts, limits = (np.array(values) for values in zip(*shown.facts.limits, strict=True))
     limits_kmh = np.round(limits * KMH_PER_MPS, 1)
-    of_piece, labels = _classes(limits_kmh)
+    of_piece, labels = limit_classes(limits_kmh)
     piece = np.searchsorted(starts, shown.s_m, "right") - 1
     hover = _hover(shown, limits_kmh[piece])
     of_place = of_piece[piece]
@@ -134,7 +110,7 @@ def _limits(shown: _Map) -> Iterator[Line]:
         yield Line(x[kept], y[kept], stroke, label, hover=texts, raised=True)
 
 
-def _classes(limits_kmh: FloatArray) -> tuple[NDArray[np.intp], list[str]]:
+def limit_classes(limits_kmh: FloatArray) -> tuple[NDArray[np.intp], list[str]]:
     """Return the class of each limit, and what the classes are called."""
     values = np.unique(limits_kmh)
     if len(values) <= palette.LIMITS_MAX:
@@ -175,8 +151,8 @@ def _places(shown: _Map) -> Iterator[Line]:
     """Yield signs, beginnings of roads, start and end."""
     route = shown.facts.route
     signs = {s: f"{limit * KMH_PER_MPS:.3g} km/h" for s, limit in shown.facts.limits[1:]}
-    signs |= {mark.s_m: mark.name for mark in route.marks if mark.kind == "sign"}
-    roads = {mark.s_m: f"road {mark.name}" for mark in _roads(route)}
+    signs |= {m.s_m: m.name for m in route.marks if m.kind == "sign" and m.s_m > 0.0}
+    roads = {mark.s_m: f"road {mark.name}" for mark in _roads(route)[1:]}
     for marks, stroke, label in ((roads, _ROAD, "Road begins"), (signs, _SIGN, "Sign")):
         apart = _apart(shown, sorted(marks))
         if apart:
@@ -193,48 +169,22 @@ def _apart(shown: _Map, places_m: Iterable[float]) -> list[float]:
     """Return those places that can be told apart on the map."""
     apart: list[float] = []
     for s_m in places_m:
-        if not apart or dist(shown.at(apart[-1]), shown.at(s_m)) > _APART_IN * shown.per_in:
+        if not apart or dist(shown.at(apart[-1]), shown.at(s_m)) > _APART_IN * shown.frame.per_in:
             apart.append(s_m)
     return apart
 
 
-def _arrows(shown: _Map) -> Iterator[Line]:
-    """Yield arrow heads in the direction of driving."""
-    reach = 0.11 * shown.per_in
-    x, y = [], []
-    for share in (np.arange(_ARROWS) + 0.5) / _ARROWS:
-        s_m = share * shown.facts.route.length_m
-        (tip_x, tip_y), (east, north) = shown.at(s_m), shown.heading(s_m)
-        for side in (1.0, 0.0, -1.0):
-            back = abs(side) * reach
-            x.append(tip_x - back * east - 0.6 * side * reach * north)
-            y.append(tip_y - back * north + 0.6 * side * reach * east)
-        x.append(np.nan)
-        y.append(np.nan)
-    yield Line(np.array(x), np.array(y), _ARROW, raised=True)
+def _arrows(shown: _Map) -> Line:
+    """Return arrow heads in the direction of driving."""
+    shares = (np.arange(_ARROWS) + 0.5) / _ARROWS
+    places = (float(share) * shown.facts.route.length_m for share in shares)
+    return shown.frame.arrow_heads((*shown.at(s), *shown.heading(s)) for s in places)
 
 
-def _scale_and_north(shown: _Map, x: Axis, y: Axis) -> Iterator[Element]:
-    """Yield a bar of a round length and an arrow to the north, at the foot of the map."""
-    inch, foot = shown.per_in, y.ends[0] + 0.15 * shown.per_in
-    power = 10.0 ** np.floor(np.log10(1.6 * inch))
-    length = float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= 1.6 * inch))
-    left, tick = x.ends[0] + 0.2 * inch, 0.06 * inch
-    right = left + length
-    bar = np.array([left, left, left, right, right, right])
-    ends = np.array([tick, -tick, 0.0, 0.0, tick, -tick])
-    yield Line(bar, foot + ends, _SCALE)
-    yield Note(0.5 * (left + right), foot, f"{length:g} {shown.unit}")
-    at, tip, wing = x.ends[1] - 0.3 * inch, foot + 0.4 * inch, 0.08 * inch
-    north_x = np.array([at, at, at - wing, at, at + wing])
-    yield Line(north_x, np.array([foot, tip, tip - 2 * wing, tip, tip - 2 * wing]), _SCALE)
-    yield Note(at, tip, "N")
-
-
-def _texts(shown: _Map, inside: Rectangle) -> list[Note]:
+def _texts(shown: _Map) -> list[Note]:
     """Return as many texts as there is room for, the most needed first."""
-    facts, labels = shown.facts, Labels(shown.x, shown.y, shown.per_in, inside)
-    if dist(shown.at(0.0), shown.at(facts.route.length_m)) < _APART_IN * shown.per_in:
+    facts, labels = shown.facts, Labels(shown.x, shown.y, shown.frame.per_in, shown.frame.inside)
+    if dist(shown.at(0.0), shown.at(facts.route.length_m)) < _APART_IN * shown.frame.per_in:
         labels.add(*shown.at(0.0), "start and end")
     else:
         labels.add(*shown.at(0.0), "start")
