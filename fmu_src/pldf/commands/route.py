@@ -6,7 +6,7 @@ import argparse
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from ..cosim.prepared import SUFFIX, write_prepared_route
 from ..durations import minutes
@@ -18,10 +18,13 @@ from .shared.road import add_road, road_options
 from .shared.road_table import road_table
 from .shared.telling import listed
 
+if TYPE_CHECKING:
+    from ..report.scene import Scene
+
 EXAMPLE: Final = (
     "pldf route study --plot study.png\n"
-    "  pldf route town.xodr --list\n"
-    "      the roads of a town, and the ways on from each\n"
+    "  pldf route town.xodr --list --plot map.png\n"
+    "      the roads of a town, the ways on from each, and a map with their ids\n"
     "  pldf route town.xodr --start-road 12 --via 45 --to 7 --export my_way.csv"
 )
 
@@ -38,7 +41,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--plot", metavar="PNG", type=_picture,
-        help="draw a plan view, limits, curvature and base profile (.png, .pdf or .svg)",
+        help="draw a plan view, limits, curvature and base profile (.png, .pdf or .svg); with "
+        "--list a map of all roads with their ids",
     )  # fmt: skip
     parser.add_argument(
         "--export",
@@ -51,8 +55,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> None:
     """Print the summary; draw and export if asked to; tell what was found at the end."""
     if options.list:
-        rows = roads_of(options.road, road_options(options))
-        print("\n".join(road_table(rows)))
+        _list(options)
         return
     route = open_road(options.road, road_options(options)).route
     facts = route_facts(route)
@@ -62,15 +65,34 @@ def run(options: argparse.Namespace) -> None:
         (write_route_csv if as_csv else write_prepared_route)(route, options.export)
         print(f"written      {options.export}")
     if options.plot is not None:
-        from ..report import figures, paper  # noqa: PLC0415 (0.5 s that few calls need)
+        from ..report import figures  # noqa: PLC0415 (0.5 s that few calls need)
 
-        if not options.plot.parent.is_dir():  # most likely a slip of the pen
-            raise ModelError(f"{options.plot}: there is no folder {options.plot.parent}")
         plan = figures.plan(facts)
-        paper.save(options.plot, *filter(None, (plan, figures.route(facts))))
         without = "" if plan else " (without a plan view: the file has no x and y)"
-        print(f"drawn        {options.plot}{without}")
+        _draw(options.plot, *filter(None, (plan, figures.route(facts))), about=without)
     print("\n".join(listed(route.notes)))
+
+
+def _list(options: argparse.Namespace) -> None:
+    """Print the roads of the file, and draw them if asked to."""
+    rows = roads_of(options.road, road_options(options))
+    print("\n".join(road_table(rows)))
+    if options.plot is not None:
+        from ..report import figures  # noqa: PLC0415 (0.5 s that few calls need)
+
+        scene = figures.network(rows, Path(options.road).name)
+        if scene is None:
+            raise ModelError(f"{options.road}: no road has a line that can be drawn")
+        _draw(options.plot, scene)
+
+
+def _draw(path: Path, *scenes: Scene, about: str = "") -> None:
+    from ..report import paper  # noqa: PLC0415 (0.5 s that few calls need)
+
+    if not path.parent.is_dir():  # most likely a slip of the pen
+        raise ModelError(f"{path}: there is no folder {path.parent}")
+    paper.save(path, *scenes)
+    print(f"drawn        {path}{about}")
 
 
 def _summary(facts: RouteFacts) -> Iterator[str]:

@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Final
+
+import numpy as np
 
 from ..errors import ModelError
 from ..findings import Finding
+from ..kernel.arrays import FloatArray
 from .choices import choices
 from .contents import read_contents
 from .leg import Leg, road_length_m
@@ -19,8 +23,11 @@ from .speeds import limits_along
 from .xml_parser import parse_xml
 from .xml_tree import Element, Place
 
+_POINT_M: Final = 2.0  # between points that are shown of a line
+_POINTS: Final = (2, 200)  # at least and at most
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False)
 class RoadRow:
     """One road of a file.
 
@@ -32,6 +39,7 @@ class RoadRow:
         lanes: for cars, along the direction in which it is drawn and against it; None: not stated.
         limits_mps: the lowest and the highest limit on it; None: it states none.
         ways_on: ids of the roads that it leads on to, driven along its direction and against it.
+        line_m: x and y of points along its line, as it is drawn; None: it has none that is read.
     """
 
     id: str
@@ -41,6 +49,7 @@ class RoadRow:
     lanes: tuple[int, int] | None
     limits_mps: tuple[float, float] | None
     ways_on: tuple[tuple[str, ...], tuple[str, ...]]
+    line_m: tuple[FloatArray, FloatArray] | None = None
 
 
 def opendrive_rows(blocks: Iterable[bytes], path: Path, options: RoadOptions) -> list[RoadRow]:
@@ -66,7 +75,8 @@ def opendrive_rows(blocks: Iterable[bytes], path: Path, options: RoadOptions) ->
 def csv_row(route: Route) -> RoadRow:
     """Return the one road that a CSV file is."""
     limits = (float(route.speed_limit_mps.min()), float(route.speed_limit_mps.max()))
-    return RoadRow("", route.name, "", route.length_m, None, limits, ((), ()))
+    line = (route.x_m, route.y_m) if route.has_line else None
+    return RoadRow("", route.name, "", route.length_m, None, limits, ((), ()), line)
 
 
 def _row(
@@ -87,7 +97,18 @@ def _row(
         network.lanes(leg.road),
         _limits_mps(network.place.path, legs or [leg], signals, options),
         (along, against),
+        _line_m(network.place.path, leg),
     )
+
+
+def _line_m(path: Path, leg: Leg) -> tuple[FloatArray, FloatArray] | None:
+    try:
+        contents = read_contents(leg, Place(path, leg.id))
+        count = int(np.clip(contents.length_m / _POINT_M, *_POINTS))
+        points = contents.points_at(np.linspace(0.0, contents.length_m, count))
+    except ModelError:
+        return None  # said when the road is driven
+    return points.x_m, points.y_m
 
 
 def _limits_mps(
