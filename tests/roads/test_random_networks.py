@@ -13,7 +13,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from networks import BOTH, LEFT, NONE, RIGHT, Map
 from pldf.errors import ModelError
@@ -182,6 +182,7 @@ def _way(truth: Truth, options: RoadOptions) -> list[Directed]:
     return way
 
 
+@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_a_way_passes_what_is_named_and_is_the_shortest(seed: int) -> None:
     dice = random.Random(seed)
@@ -206,6 +207,7 @@ def test_a_way_passes_what_is_named_and_is_the_shortest(seed: int) -> None:
     assert sum(truth.length_m(road) for road, _ in way) == pytest.approx(wanted_m)
 
 
+@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_a_way_without_names_goes_on_while_there_is_one_road(seed: int) -> None:
     dice = random.Random(seed)

@@ -123,21 +123,40 @@ def test_a_road_may_be_passed_twice(driven: Driven, told: list[str]) -> None:
 
 
 def test_a_road_out_of_reach_is_refused_with_what_can_be_reached(driven: Driven) -> None:
-    line = Map()
-    for i, name in enumerate("abc"):
-        rear = f"{'xab'[i]} end" if i else ""
-        line.road(name, (100.0 * i, 0.0), (100.0 * i + 100, 0.0), rear=rear, lanes=BOTH)
-    line.roads[0] = line.roads[0].replace(
-        "</link>", '<successor elementType="road" elementId="b" contactPoint="start"/></link>'
-    )
+    line = Map().road("a", (0.0, 0.0), (100.0, 0.0), front="b start", lanes=BOTH)
+    line.road("b", (100.0, 0.0), (200.0, 0.0), rear="a end", lanes=BOTH)
+    line.road("c", (200.0, 0.0), (300.0, 0.0), lanes=BOTH)
     with pytest.raises(ModelError, match=r"no way from road a, driven along its direction, to ro"):
         driven(line, start_road="a", to="c")
     with pytest.raises(ModelError, match="c; from there the way leads to road b"):
         driven(line, start_road="a", to="c")
     with pytest.raises(ModelError, match=r"a way from it in the other direction \(reverse\)"):
-        driven(line, start_road="c", to="a")
+        driven(line, start_road="b", to="a")
     with pytest.raises(ModelError, match="no road 'z'; it has a, b, c"):
         driven(line, start_road="a", via=("b", "z"))
+
+
+def test_a_link_that_only_one_road_has_counts_for_both(driven: Driven, told: list[str]) -> None:
+    two = Map().road("a", (0.0, 0.0), (100.0, 0.0), lanes=BOTH)
+    two.road("b", (100.0, 0.0), (200.0, 0.0), rear="a end", lanes=BOTH)
+    assert driven(two) == ["a", "b"]
+    assert told == [
+        "note: , line 9, road a, s = 100 m: no <successor>, but the start of road b is linked to "
+        "here; taken as linked"
+    ]
+    assert driven(two, start_road="b", reverse=True) == ["-b", "-a"]
+    assert told == []
+
+
+def test_a_junction_whose_roads_are_linked_to_a_road_is_its_own(
+    driven: Driven, told: list[str]
+) -> None:
+    town = crossing()
+    town.roads[0] = re.sub("<successor[^>]*>", "", town.roads[0])
+    assert driven(town, start_road="w", to="e") == ["w", "we", "e"]
+    assert "no <successor>, but the start of road ws is linked to here" in told[0]
+    with pytest.raises(ModelError, match="junction J leads on to road s"):
+        driven(town, start_road="w")
 
 
 def test_ids_may_be_words_with_commas_and_blanks(driven: Driven) -> None:

@@ -6,22 +6,55 @@ nothing, the lines decide.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
-from typing import Final
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Mapping
+from functools import cached_property
+from typing import Final, NamedTuple
 
 from .ends import Ends
 from .leg import Leg
 from .xml_tree import Element
 
-_LINK: Final = {"start": "predecessor", "end": "successor"}
+LINK: Final = {"start": "predecessor", "end": "successor"}
 ENDS: Final = ("start", "end")
+
+
+class Back(NamedTuple):
+    """A road that is linked to another one, with its own end and the link there."""
+
+    road: Element
+    end: str
+    link: Element
 
 
 class Meetings:
     """The links of the roads of one file, and where the lines of those lie that say too little."""
 
-    def __init__(self, roads: Collection[str], junctions: Collection[str], ends: Ends) -> None:
+    def __init__(
+        self, roads: Mapping[str, Element], junctions: Collection[str], ends: Ends
+    ) -> None:
         self._roads, self._junctions, self._ends = roads, junctions, ends
+
+    @cached_property
+    def _back(self) -> dict[tuple[str, str], list[Back]]:
+        """The roads whose own links are to an end of a road, by that road and end."""
+        back: dict[tuple[str, str], list[Back]] = defaultdict(list)
+        for road in self._roads.values():
+            for end in ENDS:
+                link = link_at(road, end)
+                if link is not None and not self.to_junction(link):
+                    given = link.attributes
+                    contact = given.get("contactPoint", "").strip().lower()
+                    back[given.get("elementId", ""), contact].append(Back(road, end, link))
+        return back
+
+    def linked_to(self, leg: Leg) -> list[Back]:
+        """Return the roads that are linked to the front of a leg, and do lie there."""
+        return [
+            each
+            for each in self._back.get((leg.id, leg.front), [])
+            if self._lies_at_front(leg, Leg(each.road, against=False), each.end)
+        ]
 
     def to_junction(self, link: Element) -> bool:
         """Tell whether a link is to a junction, not to a road."""
@@ -94,4 +127,4 @@ class Meetings:
 
 def link_at(road: Element, end: str) -> Element | None:
     """Return the link of a road at its start or its end, None if there is none."""
-    return next(road.all("link", _LINK[end]), None)
+    return next(road.all("link", LINK[end]), None)

@@ -6,6 +6,7 @@ Decisions:
   its own link at the end where they meet names the road, and its end where given. What the
   connecting road says of itself counts more than the junction's ``contactPoint``; where it says
   nothing, the lines decide. It must have a lane for cars in this direction.
+- Where a road has no link but another one is linked to it, they are linked.
 - Links to what is not in the file end the way: excerpts of larger maps are full of them.
 - A link into the middle of a road (``elementS``, of virtual junctions) ends it too.
 """
@@ -19,7 +20,7 @@ from dataclasses import dataclass, replace
 from ..findings import Finding, Severity
 from .ends import Ends
 from .leg import Leg, lane_counts, road_length_m
-from .meetings import ENDS, Meetings, link_at
+from .meetings import ENDS, LINK, Meetings, link_at
 from .xml_tree import Element, Place
 
 
@@ -89,16 +90,16 @@ class Network:
         """Tell whether no road and no junction of the file is linked to the rear of the leg."""
         link = link_at(leg.road, leg.rear)
         if link is None:
-            return True
+            return not self._meetings.linked_to(leg.turned)
         name = link.attributes.get("elementId", "")
         return name not in (self.junctions if self._meetings.to_junction(link) else self.roads)
 
     def _read_onward(self, leg: Leg) -> Onward:
         link = link_at(leg.road, leg.front)
         if link is None:
-            return Onward()
+            return self._linked_back(leg)
         if self._meetings.to_junction(link):
-            return self._through_junction(leg, link)
+            return self._through_junction(leg, link, link.attributes.get("elementId", ""))
         name = link.attributes.get("elementId", "")
         if name not in self.roads:
             return self._nowhere(leg, link, f"<{link.tag}> road {name!r} is not in the file")
@@ -141,10 +142,26 @@ class Network:
         )  # fmt: skip
         return Step(Leg(road, against=end == "end"), (told,))
 
+    def _linked_back(self, leg: Leg) -> Onward:
+        """Return what a leg without a link leads to: what is linked to its front, if anything."""
+        back = self._meetings.linked_to(leg)
+        within = {each.road.attributes.get("junction", "-1") for each in back} - {"-1"}
+        if len(back) != 1 and len(within) != 1:
+            return Onward()
+        road, end, link = back[0]
+        name = road.attributes.get("id", "")
+        text = f"no <{LINK[leg.front]}>, but the {end} of road {name} is linked to here"
+        told = self.told("note", leg, link, text, "taken as linked")
+        if within:
+            onward = self._through_junction(leg, link, *within)
+        else:
+            onward = Onward((Step(Leg(road, against=end == "end")),), link=link)
+        steps = tuple(replace(step, told=(*step.told, told)) for step in onward.steps)
+        return replace(onward, steps=steps, told=())
+
     # Through a junction.
 
-    def _through_junction(self, leg: Leg, link: Element) -> Onward:
-        name = link.attributes.get("elementId", "")
+    def _through_junction(self, leg: Leg, link: Element, name: str) -> Onward:
         if name not in self.junctions:
             return self._nowhere(leg, link, f"junction {name!r} is not in the file")
         connections = self._connections_of(name).get(leg.id, [])
