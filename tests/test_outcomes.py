@@ -32,8 +32,11 @@ def lines(made: DrivingFunction) -> list[str]:
     return [message.text for message in made.messages if message.level == "info"]
 
 
+WORDS = "[-+a-zA-Z0-9. ()\N{LATIN SMALL LETTER SHARP S}]*?"
+
+
 def pattern(name: str) -> str:
-    return re.escape(TEXTS[name]).replace("%d", "-?[0-9]+").replace("%s", "[-+a-z0-9. ]+?")
+    return re.escape(TEXTS[name]).replace("%d", "-?[0-9]+").replace("%s", WORDS)
 
 
 @pytest.mark.parametrize("name", sorted(TEXTS.keys() - {"MORE"}))  # which has a test of its own

@@ -40,7 +40,7 @@ from .profiles.store import (
     StoredProfile,
 )
 from .profiles.stored_profile import COLUMN_NAMES
-from .roads import Route, chosen_route, fingerprint, route_arrays
+from .roads import Mark, Route, chosen_route, fingerprint, route_arrays
 
 INPUT_TEXT: Final = {
     INPUT_OK: "inputs are valid again",
@@ -94,6 +94,7 @@ class DrivingFunction(Instance[PldfState]):
     Attributes:
         stored: what was known about this driver before the drive (None before ``initialize``).
         learned: what this drive taught, after ``finish``; None when nothing was to be learned.
+        marks: places of the route that have names, for messages.
     """
 
     groups = (RouteArrays, ProfileArrays, TraceArrays)
@@ -102,6 +103,7 @@ class DrivingFunction(Instance[PldfState]):
         super().__init__(PldfState(), Files())
         self.stored: StoredProfile | None = None
         self.learned: Iteration | None = None
+        self.marks: tuple[Mark, ...] = ()
         self._store: ProfileStore | None = None
         self._reported = INPUT_OK
 
@@ -126,6 +128,7 @@ class DrivingFunction(Instance[PldfState]):
         self.attach(cast(Arrays, (*route_arrays(route), *blank)))
         self._reported = INPUT_OK
         self.learned = None
+        self.marks = route.marks
         start_drive(self.record, self.route, self.profile, self.work)
 
     def follow(self, stored: StoredProfile) -> None:
@@ -168,7 +171,7 @@ class DrivingFunction(Instance[PldfState]):
         """Learn from the drive and save the profile; called once at its end."""
         if drive.learns(self.record) and self.record.nodes >= 2 and self.stored is not None:
             iteration = self.learn()
-            for line in lines_of(self.outcomes()):
+            for line in lines_of(self.outcomes(), self.marks):
                 self.report("info", line)
             self._save(iteration)
 

@@ -6,7 +6,7 @@ They are printf formats: the native FMUs print the same lines with them
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from math import floor
 from typing import Final
 
@@ -25,6 +25,8 @@ from .kernel.codes import (
 )
 from .kernel.units import KMH_PER_MPS
 from .outcomes import Hold, Outcomes, PedalOutcome, SetSpeedOutcome
+from .roads import Mark
+from .roads.marks import ROAD, ROADS, road_words
 
 BOUND_WORDS: Final = {
     BOUND_NONE: "no bound",
@@ -38,7 +40,7 @@ BOUND_WORDS: Final = {
 NOT_LEARNED: Final = "not learned: "
 # In people's words: %d takes a whole number of m or km/h, %s a name or a number with one decimal.
 TEXTS: Final = {
-    "PEDAL": "pedal intervention %d, %d to %d m: ",
+    "PEDAL": "pedal intervention %d, %d to %d m%s: ",
     "TRUNCATED": "(not over when the drive ended) ",
     "NOT_MOVED": NOT_LEARNED + "the car did not move",
     "LEARNED": "learned from %d to %d m, on average %s km/h, at most %s km/h",
@@ -46,7 +48,7 @@ TEXTS: Final = {
     "HOLE": NOT_LEARNED + "a hole of %s s in the recording costs %d m",
     "STOP": NOT_LEARNED + "the car was slower than %d km/h, a situation, not a wish",
     "NOT_ELIGIBLE": NOT_LEARNED + "learning was not allowed there",
-    "SET_SPEED": "set speed, %d to %d m: ",
+    "SET_SPEED": "set speed, %d to %d m%s: ",
     "SET_LEARNED": "%s km/h learned",
     "SET_CUT": "%s km/h learned of the %s km/h set, held by legal limit + tolerance",
     "SET_NOT_ELIGIBLE": "%s km/h not learned: learning was not allowed there",
@@ -56,6 +58,8 @@ TEXTS: Final = {
     "HELD": "held at %d km/h from %d to %d m by %s",
     "HELD_BETWEEN": "held at %d to %d km/h from %d to %d m by %s",
     "MORE": "held at %d more places",
+    "ROAD": ROAD,
+    "ROADS": ROADS,
 }
 
 # Of one intervention, so that its line stays readable.
@@ -64,17 +68,21 @@ HOLDS_TOLD: Final = 10
 TRANSITION_MIN_M: Final = 10
 
 
-def lines_of(outcomes: Outcomes) -> Iterator[str]:
-    """Yield one line for people per intervention."""
+def lines_of(outcomes: Outcomes, marks: Sequence[Mark] = ()) -> Iterator[str]:
+    """Yield one line for people per intervention; ``marks`` of the route name its roads."""
     for pedal in outcomes.pedals:
-        place = whole(pedal.start_m), whole(pedal.end_m)
+        place = _place(marks, pedal.start_m, pedal.end_m)
         yield TEXTS["PEDAL"] % (pedal.number, *place) + pedal_words(outcomes, pedal)
     for series in outcomes.set_speeds:
-        place = whole(series.from_m), whole(series.to_m)
+        place = _place(marks, series.from_m, series.to_m)
         yield TEXTS["SET_SPEED"] % place + set_speed_words(series)
     told = _first(told_holds(outcomes.plan_holds))
     if told:
         yield TEXTS["PLAN"] + TEXTS["SEPARATOR"].join(told)
+
+
+def _place(marks: Sequence[Mark], from_m: float, to_m: float) -> tuple[int, int, str]:
+    return whole(from_m), whole(to_m), road_words(marks, from_m, to_m)
 
 
 def pedal_words(outcomes: Outcomes, pedal: PedalOutcome) -> str:

@@ -34,5 +34,6 @@ def test_the_logs_are_equal(native_folder: Path, tmp_path: Path) -> None:
     write_prepared_route(chosen_route(0, str(road)), prepared)
     expected = [message.text for message in driven(road).messages if message.level == "info"]
     assert len(expected) > 10
+    assert "(road 12 Hauptstra\N{LATIN SMALL LETTER SHARP S}e to road 7)" in expected[1]
     assert native_lines(Host(native_folder / "AdaptivePLDF.fmu"), prepared) == expected
     assert native_lines(Host3(native_folder / "fmi3" / "AdaptivePLDF.fmu"), prepared) == expected

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fmi_host import Host
-from hostile_files import damaged, is_prepared, with_notes, with_other_blocks
+from hostile_files import damaged, is_prepared, with_marks, with_notes, with_other_blocks
 from native_drives import CASES, by_source
 from pldf.errors import ModelError
 from pldf.kernel.codes import PROFILE_BASE, PROFILE_LOADED, PROFILE_REFUSED
@@ -19,6 +20,9 @@ from pldf.profiles.store import ProfileStore
 from pldf.profiles.stored_profile import StoredProfile
 
 pytest.importorskip("ziglang", reason="needs the extra: pip install -e .[native]")
+
+from pldf.cosim.prepared import prepared_route
+from pldf.roads import Mark, packed_route
 
 
 @pytest.fixture(scope="module")
@@ -107,9 +111,28 @@ def test_prepared_files(
     """Python only writes them; its verdict is the description's."""
     host = Host(native_folder / f"{model}.fmu")
     good = (host.folder / "resources" / kind / "0.prepared").read_bytes()
+    compare(host, kind, columns, [*damaged(good), good], tmp_path)
+
+
+def test_prepared_routes_with_marks(native_folder: Path, tmp_path: Path) -> None:
+    """Names of roads and signs stand in the header."""
+    marks = (Mark(0.0, "road", "12 Hauptstra\N{LATIN SMALL LETTER SHARP S}e"),)
+    marks += (Mark(40.5, "sign", "50 km/h sign"), Mark(90.0, "road", "7", against=True))
+    good = prepared_route(replace(packed_route(0), marks=marks))
+    assert good.startswith(b"PLDF-PREPARED 2\n")
+    host = Host(native_folder / "AdaptivePLDF.fmu")
+    compare(host, "route", 5, [*damaged(good), *with_marks(good), good], tmp_path)
+    older = prepared_route(replace(packed_route(0), marks=()))
+    assert older.startswith(b"PLDF-PREPARED 1\n")
+    assert is_prepared(older, "route", 5)
+    assert older[-100_000:-15] == good[-100_000:-15]
+
+
+def compare(host: Host, kind: str, columns: int, files: list[bytes], tmp_path: Path) -> None:
+    """Compare the verdict of the C reader with that of the description; the last one is sound."""
     path = tmp_path / "file.prepared"
     verdicts = []
-    for data in (*damaged(good), good):
+    for data in files:
         path.write_bytes(data)
         slave = host.instantiate()
         slave.set(**{f"{kind}_file": str(path)}, **({"kind": 1} if kind == "script" else {}))
@@ -118,4 +141,5 @@ def test_prepared_files(
         verdicts.append(is_prepared(data, kind, columns))
         assert (slave.status("exitInitializationMode") == 0) == verdicts[-1], data[:200]
         slave.free()
+    assert verdicts[-1]
     assert 30 < np.count_nonzero(verdicts) < len(verdicts) - 100

@@ -115,19 +115,68 @@ def checked(body: bytes) -> bytes:
 def is_prepared(data: bytes, kind: str, columns: int) -> bool:
     """Tell whether these bytes are a prepared file as ``docs/native.md`` describes it."""
     head = re.match(
-        rb"PLDF-PREPARED 1\nkind (route|script)\nkey [0-9a-f]{16}\ncolumns (0|[1-9]\d?)\n"
-        rb"rows (0|[1-9]\d{0,8})\nline (\d)\nend( *)\n",
+        rb"PLDF-PREPARED ([12])\nkind (route|script)\nkey [0-9a-f]{16}\ncolumns (0|[1-9]\d?)\n"
+        rb"rows (0|[1-9]\d{0,8})\nline (\d)\n"
+        rb"(marks ([1-9]\d{0,5})\n((?:mark [^\n]*\n)+))?end( *)\n",
         data,
     )
-    if head is None or head[1].decode() != kind or int(head[2]) != columns:
+    if head is None or head[2].decode() != kind or int(head[3]) != columns:
         return False
-    rows, size = int(head[3]), len(head[0])
+    if (head[1] == b"2") != (head[6] is not None) or (head[6] is not None and kind != "route"):
+        return False
+    rows, size = int(head[4]), len(head[0])
+    if head[6] is not None and not _are_marks(head[8].split(b"\n")[:-1], int(head[7]), rows):
+        return False
     if not (3 if kind == "route" else 1) <= rows <= 10_000_001:
         return False
-    if size % 64 or len(head[5]) > 63 or len(data) != size + 8 * columns * rows + CHECKSUM_SIZE:
+    if size % 64 or len(head[9]) > 63 or len(data) != size + 8 * columns * rows + CHECKSUM_SIZE:
         return False
     values = np.frombuffer(data, "<f8", columns * rows, size)
     return data == checked(data[:-CHECKSUM_SIZE]) and bool(np.isfinite(values).all())
+
+
+def _are_marks(lines: list[bytes], count: int, rows: int) -> bool:
+    if len(lines) != count:
+        return False
+    before = 0
+    for line in lines:
+        found = re.fullmatch(rb"mark (0|[1-9]\d{0,10}) (road|road_against|sign) (.{1,80})", line)
+        if found is None or not before <= int(found[1]) <= 1000 * rows:
+            return False
+        before, name = int(found[1]), found[3]
+        try:
+            letters = name.decode()
+        except UnicodeDecodeError:
+            return False
+        if name != name.strip(b" ") or any(c < " " or c == "\x7f" for c in letters):
+            return False
+    return True
+
+
+_MARKS: Final = (
+    b"0 road 1", b"12 road 1", b"0 road", b"0 road ", b"0 road  1", b"0 road 1 ", b"0 Road 1",
+    b"", b"0 roads 1", b"0 road_against 7", b"0 road_again 7", b"0 sign 50 km/h", b"00 road 1",
+    b"-1 road 1", b"1.5 road 1", b"9999999999 road 1", b"99999999999 road 1",
+    b"999999999999 road 1", b"0 road " + b"n" * 80, b"0 road " + b"n" * 81,
+    b"0 road " + b"n" * 4000, b"0 road a\tb", b"0 road a\x7fb", b"0 road \xc3\xa4",
+    b"0 road \xc3", b"0 road \xc0\x80", b"0 road \xed\xa0\x80", b"0 road \xf4\x90\x80\x80",
+    b"0 road \xf0\x9f\x9a\x97", b"0 road \xe0\x80\x80", b"0 road %s%n", b"0 road \xf0\x9f",
+    b"0 road a\0b",
+)  # fmt: skip
+
+
+def with_marks(good: bytes) -> Iterator[bytes]:
+    """Yield variants of a prepared route with marks: others in place of its first."""
+    body = good[:-CHECKSUM_SIZE]
+    first = re.search(rb"\nmark ([^\n]*)", body)
+    assert first is not None
+    for mark in _MARKS:
+        yield checked(filled(body.replace(first[0], b"\nmark " + mark, 1)))
+    yield checked(filled(body.replace(first[0], b"", 1)))
+    yield checked(filled(re.sub(rb"\nmarks [^\n]*(\nmark [^\n]*)+", b"\nmarks 0", body, count=1)))
+    yield checked(filled(re.sub(rb"\nmarks [^\n]*(\nmark [^\n]*)+", b"", body, count=1)))
+    yield checked(body.replace(b"PREPARED 2", b"PREPARED 1", 1))
+    yield checked(body.replace(b"PREPARED 2", b"PREPARED 3", 1))
 
 
 def filled(body: bytes) -> bytes:

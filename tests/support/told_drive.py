@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from pldf.function import DrivingFunction
 from pldf.recordings.recording import Recording
+from pldf.roads import Mark, read_route, write_route_csv
 
 STEP_S = 0.1
 ROAD = """s_m,curvature_per_m,speed_limit_mps
@@ -20,10 +22,19 @@ ROAD = """s_m,curvature_per_m,speed_limit_mps
 Inputs = dict[str, float | bool]
 
 
+MARKS = (
+    Mark(0.0, "road", "12 Hauptstra\N{LATIN SMALL LETTER SHARP S}e"),
+    Mark(1200.0, "road", "7", against=True),
+    Mark(1200.0, "sign", "50 km/h sign"),
+    Mark(1700.0, "road", "100"),
+)
+
+
 def write_road(folder: Path) -> Path:
-    """Write the road: 100 km/h with 50 km/h over 40 m."""
+    """Write the road: 100 km/h with 50 km/h over 40 m, on three roads of a map."""
     path = folder / "road.csv"
     path.write_text(ROAD)
+    write_route_csv(replace(read_route(path), marks=MARKS), path)
     return path
 
 

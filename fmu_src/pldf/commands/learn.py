@@ -105,7 +105,7 @@ def _print_summary(learned: Learned, report: dict[str, Any], out: str) -> None:
         f"Rates: pedal {rates['pedal']:.1%}, set speed {rates['set_speed']:.1%}, "
         f"combined {rates['combined']:.1%}"
     )
-    lines = list(lines_of(learned.function.outcomes()))
+    lines = list(lines_of(learned.function.outcomes(), learned.function.marks))
     for line in lines or ["no intervention, so nothing was learned"]:
         print(line[0].upper() + line[1:])
     print(f"Iteration {learned.iteration.number} written to {out}")

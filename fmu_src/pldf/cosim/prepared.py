@@ -15,6 +15,7 @@ from ..errors import ModelError
 from ..files.disk import replace_file
 from ..roads import Route, fingerprint, packed_route, route_arrays
 from ..roads.load import PACKED
+from ..roads.marks import mark_lines
 
 SUFFIX: Final = ".prepared"
 _ALIGNMENT: Final = 64
@@ -22,7 +23,8 @@ _ALIGNMENT: Final = 64
 
 def prepared_route(route: Route) -> bytes:
     """Return the file of ``route`` with the arrays that the kernel needs."""
-    return _prepared("route", fingerprint(route), route_arrays(route), route.has_line)
+    lines = mark_lines(route.marks, exact=False)
+    return _prepared("route", fingerprint(route), route_arrays(route), route.has_line, lines)
 
 
 def packed_files() -> dict[str, bytes]:
@@ -32,7 +34,7 @@ def packed_files() -> dict[str, bytes]:
 
 def prepared_script(columns: tuple[Any, ...]) -> bytes:
     """Return the file of a driver's script, given as the kernel's arrays."""
-    return _prepared("script", "0" * 16, columns, False)
+    return _prepared("script", "0" * 16, columns, False, [])
 
 
 def write_prepared_route(route: Route, path: Path) -> None:
@@ -52,11 +54,21 @@ def _write(path: Path, data: bytes) -> None:
         raise ModelError(f"{path}: cannot be written ({error.strerror})") from None
 
 
-def _prepared(kind: str, key: str, columns: tuple[Any, ...], has_line: bool) -> bytes:
-    head = (
-        f"PLDF-PREPARED 1\nkind {kind}\nkey {key}\ncolumns {len(columns)}\n"
-        f"rows {len(columns[0])}\nline {int(has_line)}\nend"
-    )
-    head += " " * (-(len(head) + 1) % _ALIGNMENT) + "\n"
-    body = head.encode() + b"".join(np.asarray(c, "<f8").tobytes() for c in columns)
+def _prepared(
+    kind: str, key: str, columns: tuple[Any, ...], has_line: bool, marks: list[str]
+) -> bytes:
+    """Return the bytes; without marks they are of format 1, which older releases read."""
+    lines = [
+        f"PLDF-PREPARED {2 if marks else 1}",
+        f"kind {kind}",
+        f"key {key}",
+        f"columns {len(columns)}",
+        f"rows {len(columns[0])}",
+        f"line {int(has_line)}",
+        *([f"marks {len(marks)}", *marks] if marks else []),
+        "end",
+    ]
+    head = "\n".join(lines).encode()
+    head += b" " * (-(len(head) + 1) % _ALIGNMENT) + b"\n"
+    body = head + b"".join(np.asarray(c, "<f8").tobytes() for c in columns)
     return body + b"crc32 %08x\n" % zlib.crc32(body)

@@ -257,7 +257,7 @@ def _outcomes(
         known = stored is None or "profile_mps" in recordings[phase.name]
         if not known or any(note.severity == "warning" for note in learned.notes):
             break
-        told[phase.name] = tuple(lines_of(learned.function.outcomes()))
+        told[phase.name] = tuple(lines_of(learned.function.outcomes(), learned.function.marks))
         stored = learned.profile
     return told
 

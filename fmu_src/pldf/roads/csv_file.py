@@ -19,6 +19,7 @@ from ..kernel.arrays import FloatArray
 from .curves import judged
 from .kinks import CAR_LENGTH_M
 from .line_check import line_doubts
+from .marks import mark_lines, marks_in
 from .route import COLUMNS, Route, fingerprint, first_fault
 from .sampling import NO_JOINTS
 
@@ -56,12 +57,14 @@ def parse_route_csv(data: bytes, path: Path, smoothing_m: float | None) -> Route
     _refuse(table, first_fault(columns, sharp=False))
     knots = np.stack([columns[name] for name in COLUMNS])
     told: list[Finding] = []
-    if smoothing_m is not None or not _written_by_us(table, columns):
+    ours = _written_by_us(table, columns)
+    if smoothing_m is not None or not ours:
         knots, told = _judged(table, knots, smoothing_m)
     s_m, curvature, limit, grade, x_m, y_m = knots
     return Route(
         path.stem, s_m, curvature, limit, grade, x_m, y_m,
         has_line="x_m" in table, notes=(*table.notes, *told),
+        marks=marks_in(table.comments, float(s_m[-1])) if ours else (),
     )  # fmt: skip
 
 
@@ -85,14 +88,15 @@ def _judged(
 
 
 def write_route_csv(route: Route, path: Path | str) -> None:
-    """Write every knot so that reading the file gives the same route to the bit.
+    """Write every knot so that reading the file gives the same route to the bit, with its marks.
 
     Raises:
         ModelError: it cannot be written.
     """
     columns = COLUMNS if route.has_line else COLUMNS[:4]
     head = f"route {route.name}, {_judged_mark(route)}"
-    write_table(path, {name: route.knots[name] for name in columns}, [head])
+    marks = mark_lines(route.marks, exact=True)
+    write_table(path, {name: route.knots[name] for name in columns}, [head, *marks])
 
 
 def _judged_mark(route: Route) -> str:

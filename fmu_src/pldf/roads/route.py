@@ -27,11 +27,14 @@ PLACE_MAX_M: Final = 1e8
 COLUMNS: Final = ("s_m", "curvature_per_m", "speed_limit_mps", "grade", "x_m", "y_m")
 
 
+MarkKind = Literal["road", "sign"]  # a road of the file begins, a sign stands
+
+
 class Mark(NamedTuple):
     """A place on a route that has a name, for messages and pictures."""
 
     s_m: float
-    kind: Literal["road", "sign"]  # a road of the file begins, a sign stands
+    kind: MarkKind
     name: str
     against: bool = False  # a road that is driven against the direction in which it is drawn
 

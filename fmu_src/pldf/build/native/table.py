@@ -24,6 +24,7 @@ from ...profiles.file_parts import ALIGNMENT, CHECKSUM_SIZE, COLUMNS, NODES_MAX,
 from ...profiles.older_reading import ALIKE_MPS, ALIKE_SHARE, LENGTH_SHARE
 from ...profiles.profile_format_1 import COLUMNS_1
 from ...profiles.stored_profile import KINDS
+from ...roads.marks import KIND_WORDS, NAME_BYTES_MAX
 from .model import NativeModel
 
 _KINDS: Final = {
@@ -68,6 +69,8 @@ def header(model: NativeModel) -> str:
         "KERNEL_COLUMNS": len(LEARNED),
         "FORMAT_1_COLUMNS": len(COLUMNS_1),
         "PROFILE_KINDS": len(KINDS),
+        "MARK_KINDS": len(KIND_WORDS),
+        "NAME_BYTES_MAX": NAME_BYTES_MAX,
         "NODES_MAX": NODES_MAX,
         "ALIGNMENT": ALIGNMENT,
         "CHECKSUM_SIZE": CHECKSUM_SIZE,
@@ -110,6 +113,7 @@ def source(model: NativeModel, guid: str, token: str) -> str:
     lines += _texts("const char *const phase_names", (phase.name for phase in Phase))
     lines += _array("const ProfileColumn profile_columns", map(_column, COLUMNS))
     lines += _texts("const char *const profile_kinds", KINDS)
+    lines += _texts("const char *const mark_kinds", KIND_WORDS.values())
     lines += _texts(
         "const char *const bound_words", (BOUND_WORDS[code] for code in range(len(BOUND.items)))
     )

@@ -80,5 +80,6 @@ typedef struct {
 /* Of an iteration; those from COLUMN_LEARNED on, KERNEL_COLUMNS of them, are the kernel's too. */
 extern const ProfileColumn profile_columns[PROFILE_COLUMNS];
 extern const char *const profile_kinds[PROFILE_KINDS];
+extern const char *const mark_kinds[MARK_KINDS];
 extern const char *const bound_words[];
 extern const char *const phase_names[];

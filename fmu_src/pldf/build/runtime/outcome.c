@@ -2,7 +2,9 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
+#include "prepared.h"
 #include "run.h"
 
 typedef struct {
@@ -79,9 +81,27 @@ static void add_barred(Line *line, double metres) {
     if (metres > 0.0) add(line, TEXT_BARRED, whole(metres));
 }
 
+typedef struct {
+    char text[2 * sizeof(Name) + 32];
+} Roads;
+
+static int64_t millimetres(double s_m) { return (int64_t)floor(1000.0 * s_m + 0.5); }
+
+/* On which roads of the file a piece of the route lies; empty if there is one only. */
+static Roads roads(const Run *run, double from_m, double to_m) {
+    Roads words = {""};
+    Name first, last;
+    if (mark_road(run->marks, millimetres(from_m), &first) < 2) return words;
+    mark_road(run->marks, millimetres(to_m), &last);
+    if (strcmp(first.text, last.text) == 0) snprintf(words.text, sizeof words.text, TEXT_ROAD, first.text);
+    else snprintf(words.text, sizeof words.text, TEXT_ROADS, first.text, last.text);
+    return words;
+}
+
 static void add_pedal(Line *line, const State *state, const Run *run, int64_t k) {
     const Learning *l = model.learning;
-    add(line, TEXT_PEDAL, (int)k + 1, whole(TRACE(START_M)), whole(TRACE(END_M)));
+    add(line, TEXT_PEDAL, (int)k + 1, whole(TRACE(START_M)), whole(TRACE(END_M)),
+        roads(run, TRACE(START_M), TRACE(END_M)).text);
     if (state->record[l->intervening].integer && k == state->record[l->interventions].integer - 1)
         add(line, TEXT_TRUNCATED);
     switch ((int)NEXT(OUTCOME)) {
@@ -100,7 +120,8 @@ static void add_pedal(Line *line, const State *state, const Run *run, int64_t k)
 
 static void add_set_speed(Line *line, const State *state, const Run *run, int64_t k) {
     double wish = NEXT(SET_WISH_MPS), offset = NEXT(SET_OFFSET_MPS);
-    add(line, TEXT_SET_SPEED, whole(NEXT(SET_FROM_M)), whole(NEXT(SET_TO_M)));
+    add(line, TEXT_SET_SPEED, whole(NEXT(SET_FROM_M)), whole(NEXT(SET_TO_M)),
+        roads(run, NEXT(SET_FROM_M), NEXT(SET_TO_M)).text);
     if ((int)NEXT(SET_OUTCOME) == OUTCOME_TAKEN_BACK) add(line, TEXT_SET_TAKEN_BACK);
     else if ((int)NEXT(SET_OUTCOME) == OUTCOME_NOT_ELIGIBLE)
         add(line, TEXT_SET_NOT_ELIGIBLE, signed_kmh(wish).text);

@@ -8,6 +8,7 @@
 
 void run_release(Run *run) {
     free(run->block);
+    free(run->marks);
     profile_free(&run->stored);
     memset(run, 0, sizeof *run);
 }
@@ -90,7 +91,8 @@ static bool fill_block(const Importer *importer, State *state, Run *run, const P
     state->rows = script->rows;
     int64_t values = model.node_columns * state->nodes + model.script_columns * state->rows;
     run->block = calloc((size_t)values, sizeof(double));
-    if (!run->block) return importer_tell(importer, ERROR_LEVEL, "not enough memory for this route");
+    if (!run->block || !prepared_copy_marks(route, &run->marks))
+        return importer_tell(importer, ERROR_LEVEL, "not enough memory for this route");
     for (int64_t i = 0; i < values; i += 512) /* the system gives every page now, not in a step */
         *(volatile double *)(run->block + i) = 0.0;
     copy_columns(run->block + model.route_column * state->nodes, route);
@@ -107,7 +109,7 @@ bool run_make(const Importer *importer, State *state, Run *run) {
                 fill_block(importer, state, run, &route, &script);
     free(route.bytes);
     free(script.bytes);
-    if (!good) return false;
+    if (!good) return run_release(run), false;
     run_call(model.start, state, run, 0.0);
     learning_follow(importer, state, run);
     return true;

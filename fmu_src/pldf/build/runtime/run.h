@@ -17,6 +17,7 @@ typedef struct { /* what is saved and restored, followed by the kept columns */
 typedef struct { /* what follows from the parameters */
     double *block;
     Profile stored;
+    char *marks; /* of the route, a line each (prepared.h); NULL: there are none */
     char folder[PATH_SIZE]; /* of profiles; empty: nothing is persisted */
 } Run;
 

@@ -51,6 +51,28 @@ bool take_key(Cursor *cursor, const char *name, char *key) {
     return take_line_end(cursor);
 }
 
+/* Length of the printable character in UTF-8 that comes next, 0 if there is none. */
+static int character(const Cursor *cursor) {
+    const uint8_t *at = cursor->at;
+    int64_t room = cursor->end - at;
+    if (room < 1 || *at < 0x20 || *at == 0x7F) return 0;
+    int length = *at < 0x80 ? 1 : *at < 0xC2 ? 0 : *at < 0xE0 ? 2 : *at < 0xF0 ? 3 : *at < 0xF5 ? 4 : 0;
+    if (room < length) return 0;
+    for (int i = 1; i < length; i++)
+        if ((at[i] & 0xC0) != 0x80) return 0;
+    bool too_long = (*at == 0xE0 && at[1] < 0xA0) || (*at == 0xF0 && at[1] < 0x90);
+    bool no_letter = (*at == 0xED && at[1] > 0x9F) || (*at == 0xF4 && at[1] > 0x8F);
+    return too_long || no_letter ? 0 : length;
+}
+
+bool take_name(Cursor *cursor, int bytes) {
+    const uint8_t *first = cursor->at;
+    for (int length = character(cursor); length; length = character(cursor)) cursor->at += length;
+    int64_t length = cursor->at - first;
+    return (length >= 1 && length <= bytes && *first != ' ' && cursor->at[-1] != ' ') ||
+           refuse(cursor, "a name of 1 to 80 bytes");
+}
+
 /* Takes "end", as few spaces as possible and LF, so that the header fills a multiple of 64. */
 bool take_end(Cursor *cursor, const uint8_t *start) {
     if (!take(cursor, "end")) return false;

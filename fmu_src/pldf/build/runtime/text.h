@@ -15,6 +15,7 @@ bool take_number(Cursor *cursor, int digits, int64_t *number);
 bool take_line_end(Cursor *cursor);
 bool take_entry(Cursor *cursor, const char *name, int digits, int64_t *number);
 bool take_key(Cursor *cursor, const char *name, char *key);
+bool take_name(Cursor *cursor, int bytes); /* at most so many, printable, no space around them */
 bool take_end(Cursor *cursor, const uint8_t *start);
 
 uint32_t checksum(const uint8_t *bytes, int64_t size);
