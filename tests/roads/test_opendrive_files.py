@@ -101,6 +101,9 @@ def test_a_road_that_cannot_be_decoded_is_refused_with_its_line(
         (straight("1", inside='<type s="0"><speed max="100"/></type>'), "limit 100 m/s .no unit"),
         (straight("1", inside='<type s="0"><speed max="9" unit="knots"/></type>'), "unit 'knots'"),
         (straight("1", inside='<type s="0"><speed max="fast"/></type>'), "max = 'fast' is not"),
+        (straight("1", inside='<type s="0"><speed max="1_0"/></type>'), "max = '1_0' is not"),
+        (straight("1", inside='<type s="0"><speed max="\u0661"/></type>'), "max = '\u0661' is not"),
+        (road("1", geometry(0, 100, '<arc curvature="0.0_1"/>')), "curvature = '0.0_1' is not"),
         (straight("1", inside='<type s="0"><speed unit="mph"/></type>'), "max is missing"),
     ],
 )

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from .xml_tree import Element
+from .xml_tree import Element, as_number
 
 DRIVEN: Final = frozenset(
     (
@@ -99,8 +99,5 @@ def lane_counts(road: Element) -> tuple[int, int] | None:
 
 def road_length_m(leg: Leg) -> float:
     """Return the length that the road states; 0 if it states none: that is told when it is read."""
-    try:
-        length_m = float(leg.road.attributes.get("length", ""))
-    except ValueError:
-        return 0.0
+    length_m = as_number(leg.road.attributes.get("length"))
     return length_m if math.isfinite(length_m) and length_m > 0.0 else 0.0

@@ -6,7 +6,6 @@ text: it is an error only in a road that is driven.
 
 from __future__ import annotations
 
-import math
 from array import array
 from collections.abc import Callable
 from typing import Final, NamedTuple
@@ -17,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..kernel.arrays import FloatArray
 from .ragged import Indices
-from .xml_tree import Element, no_number
+from .xml_tree import Element, as_number, is_plain, no_number
 
 POSE: Final = ("s", "x", "y", "hdg", "length")
 NO_SHAPE, LINE, ARC, SPIRAL, POLY3, NORMALIZED, ARC_LENGTH = range(7)
@@ -80,21 +79,15 @@ class _Numbers:
     def convert(self) -> None:
         """Make numbers of the texts that wait."""
         try:
-            new = array("d", map(float, self.texts))  # type: ignore[arg-type]
+            plain = is_plain("".join(self.texts))  # type: ignore[arg-type]
+            new = array("d", map(float if plain else as_number, self.texts))  # type: ignore[arg-type]
         except (ValueError, TypeError):
-            new = array("d", map(_number, self.texts))
+            new = array("d", map(as_number, self.texts))
         for at in np.flatnonzero(~np.isfinite(new)):
             text = self.texts[at]
             self.none[len(self._values) + int(at)] = None if text is None else text[:_TEXT_MAX]
         self._values += new
         self.texts.clear()
-
-
-def _number(text: str | None) -> float:
-    try:
-        return math.nan if text is None else float(text)
-    except ValueError:
-        return math.nan
 
 
 def _param_poly3(attributes: dict[str, str]) -> int:

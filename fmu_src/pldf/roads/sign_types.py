@@ -12,6 +12,7 @@ import re
 from typing import Final, Literal, NamedTuple
 
 from .options import LimitUnit
+from .xml_tree import as_number
 
 # limit: begins a limit; end: ends it; implied: the law has a limit here, which it does not show.
 Meaning = Literal["limit", "end", "implied"]
@@ -39,10 +40,10 @@ class _Row(NamedTuple):
     number: float | None = None
 
 
-_N: Final = r"(?:(?:[-._V]|\()(?P<n>\d+)\)?)?"
+_N: Final = r"(?:(?:[-._V]|\()(?P<n>[0-9]+)\)?)?"
 _GERMAN: Final = (
-    _Row(r"274(?:-(?P<n>\d+))?"),
-    _Row(r"274\.1(?:-(?P<n>\d+))?", number=30.0),
+    _Row(r"274(?:-(?P<n>[0-9]+))?"),
+    _Row(r"274\.1(?:-(?P<n>[0-9]+))?", number=30.0),
     _Row(r"(?:274\.2|278)(?:-\d+)?|282", "end"),
     _Row(r"(?:310|311|325\.1|325\.2)(?:-\d+)?", "implied"),
 )
@@ -54,7 +55,7 @@ _ROWS: Final[dict[str, tuple[_Row, ...]]] = {
         _Row(r"C-?43" + _N), _Row(r"C-?45" + _N, "end"),
         _Row(r"F-?4A", number=30.0), _Row(r"F-?4B", "end"),
     ),
-    "CH": (_Row(r"2\.(?:30|59\.1)(?:[-.](?P<n>\d+))?"), _Row(r"2\.(?:53|58|59\.2)", "end")),
+    "CH": (_Row(r"2\.(?:30|59\.1)(?:[-.](?P<n>[0-9]+))?"), _Row(r"2\.(?:53|58|59\.2)", "end")),
     "CZ": (_Row(r"B-?20A" + _N), _Row(r"B-?20B" + _N, "end")),
     "DE": _GERMAN,
     "DK": (_Row(r"C-?55" + _N), _Row(r"C-?56" + _N, "end")),
@@ -63,7 +64,7 @@ _ROWS: Final[dict[str, tuple[_Row, ...]]] = {
         _Row(r"S-?30", number=30.0), _Row(r"S-?31", "end"),
     ),
     "FI": (
-        _Row(r"(?:361|363|C-?32|C-?34)(?:[-_](?P<n>\d+))?"),
+        _Row(r"(?:361|363|C-?32|C-?34)(?:[-_](?P<n>[0-9]+))?"),
         _Row(r"(?:362|364|C-?33|C-?35)(?:[-_]\d+)?", "end"),
     ),
     "FR": (
@@ -78,7 +79,7 @@ _ROWS: Final[dict[str, tuple[_Row, ...]]] = {
     "JP": (_Row(r"323" + _N),),
     "KR": (_Row(r"224" + _N),),
     "NL": (_Row(r"A-?0?1" + _N), _Row(r"A-?0?2" + _N, "end")),
-    "NO": (_Row(r"36[26](?:[-.](?P<n>\d+))?"), _Row(r"36[48](?:[-.]\d+)?", "end")),
+    "NO": (_Row(r"36[26](?:[-.](?P<n>[0-9]+))?"), _Row(r"36[48](?:[-.]\d+)?", "end")),
     "PL": (_Row(r"B-?(?:33|43)" + _N), _Row(r"B-?(?:34|42|44)" + _N, "end")),
     "RU": (_Row(r"3\.24" + _N), _Row(r"5\.31" + _N), _Row(r"(?:3\.25|3\.31|5\.32)" + _N, "end")),
     "SE": (_Row(r"C-?31" + _N), _Row(r"C-?32" + _N, "end")),
@@ -147,10 +148,7 @@ def _full_code(kind: str, subtype: str) -> str:
 
 
 def _value(country: str, text: str) -> float | None:
-    try:
-        value = float(text)
-    except ValueError:
-        return None
+    value = as_number(text)
     if country == "SE" and 0.0 < value <= _SWEDISH_MAX:
         value *= 10.0  # esmini has the last part of the code there: C31-5 shows 50
     return value if 0.0 < value < math.inf else None

@@ -16,7 +16,7 @@ from .sign_types import SignType, sign_type, supplementary
 from .speed_records import Section
 from .speed_values import Speed, speed_of, unit_named
 from .spots import Spot, counted, listed, told
-from .xml_tree import Element
+from .xml_tree import Element, as_number
 
 _TEXT_MAX: Final = 30  # characters that are told
 _POST_M: Final = 0.5
@@ -199,8 +199,5 @@ def _for_us(element: Element, sections: list[Section]) -> bool:
 
 def _number(element: Element, name: str) -> float | None:
     """Return an attribute as a number, None if it is none: a sign is not worth a refusal."""
-    try:
-        value = float(element.attributes.get(name, ""))
-    except ValueError:
-        return None
+    value = as_number(element.attributes.get(name))
     return value if math.isfinite(value) else None

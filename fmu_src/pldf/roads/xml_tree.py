@@ -71,13 +71,26 @@ class Place:
         text = element.attributes.get(name)
         if text is None and default is not None:
             return default
-        try:
-            value = float(text if text is not None else "")
-        except ValueError:
-            value = math.nan
+        value = as_number(text)
         if not math.isfinite(value):
             raise self.error(element, no_number(element.tag, name, text))
         return value
+
+
+def as_number(text: str | None) -> float:
+    """Return the number that ``text`` is, NaN if it is missing or none."""
+    try:
+        return float(text) if text is not None and is_plain(text) else math.nan
+    except ValueError:
+        return math.nan
+
+
+def is_plain(text: str) -> bool:
+    """Tell whether ``text`` has none of what Python takes in numbers and XML does not.
+
+    Those are underscores (1_0) and the digits of other scripts.
+    """
+    return "_" not in text and text.isascii()
 
 
 def no_number(tag: str, name: str, text: str | None) -> str:
