@@ -142,6 +142,8 @@ def test_a_folder_that_does_not_exist_is_bad_input(run: Run, option: str, name: 
         (("study", "--default-limit", "0"), "above 0"),
         (("study", "--default-limit", "fast"), "above 0"),
         (("study", "--plott"), "unrecognized"),
+        (("study", "--list", "--to", "1"), "--list shows all roads of the file; --to is for one"),
+        (("study", "--list", "--export", "x.csv"), "--export is for one way"),
     ],
 )
 def test_wrong_usage_exits_with_2(run: Run, arguments: tuple[str, ...], told: str) -> None:

@@ -192,10 +192,17 @@ def test_a_connecting_road_that_ends_here_is_no_way_out(driven: Driven, told: li
 
 
 def test_the_lines_decide_where_a_connecting_road_has_no_links(driven: Driven) -> None:
+    """It leaves from here if it begins nearer to this end than to the other, and does not go back.
+
+    The start of x lies 120 m from the start of w and 20 m from its end, but x leads back to w.
+    """
     entry = _side_road(lanes=NONE).connect("J", "w", "x", "start")
-    # Its start lies 120.3 m from the start of w and 21.9 m from its end.
-    with pytest.raises(ModelError, match=r"road e \(straight on.*, road x \(back, 21.9 m"):
-        driven(entry, start_road="w")
+    assert driven(entry, start_road="w") == ["w", "c", "e"]
+    leaving = _side_road((100.0, 0.0), (120.0, 9.0), lanes=NONE).connect("J", "w", "x", "start")
+    with pytest.raises(ModelError, match=r"road e \(straight on.*, road x \(straight on, 21.9 m"):
+        driven(leaving, start_road="w")
+    far = _side_road((-9.0, 0.0), (-20.0, 9.0), lanes=NONE).connect("J", "w", "x", "start")
+    assert driven(far, start_road="w") == ["w", "c", "e"]
 
 
 def test_a_contact_point_that_the_road_contradicts_is_told(driven: Driven, told: list[str]) -> None:

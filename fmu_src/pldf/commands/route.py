@@ -29,6 +29,13 @@ EXAMPLE: Final = (
 )
 
 _LISTED_MAX: Final = 24
+_OF_ONE_WAY: Final = {
+    "start_road": "--start-road",
+    "via": "--via",
+    "to": "--to",
+    "reverse": "--reverse",
+    "export": "--export",
+}
 _PICTURES: Final = (".png", ".pdf", ".svg")
 
 
@@ -50,6 +57,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="write the route as CSV; as OUT.prepared: for route_file of a native FMU",
     )
+    parser.set_defaults(refuse=parser.error)
 
 
 def run(options: argparse.Namespace) -> None:
@@ -75,6 +83,9 @@ def run(options: argparse.Namespace) -> None:
 
 def _list(options: argparse.Namespace) -> None:
     """Print the roads of the file, and draw them if asked to."""
+    for name, option in _OF_ONE_WAY.items():
+        if getattr(options, name):
+            options.refuse(f"--list shows all roads of the file; {option} is for one way")
     rows = roads_of(options.road, road_options(options))
     print("\n".join(road_table(rows)))
     if options.plot is not None:

@@ -14,6 +14,8 @@ from .xml_tree import Element, Place
 
 # Over this length behind its beginning a road shows where it leads.
 _SHOWN_M: Final = 50.0
+# No car turns that much on the spot.
+_BACK_RAD: Final = math.radians(120.0)
 
 
 class Pose(NamedTuple):
@@ -38,6 +40,15 @@ class Ends:
             return 0.0
         here, there = ends[end], others[other_end]
         return math.hypot(here.x_m - there.x_m, here.y_m - there.y_m)
+
+    def goes_back(self, before: Leg, leg: Leg) -> bool:
+        """Tell whether ``leg`` begins in about the direction that ``before`` comes from."""
+        ends, others = self._of(before.road), self._of(leg.road)
+        if ends is None or others is None:
+            return False
+        turns = (before.against != leg.against) * math.pi
+        turn = others[leg.rear].heading_rad - ends[before.front].heading_rad + turns
+        return abs(math.remainder(turn, 2.0 * math.pi)) > _BACK_RAD
 
     def turn_rad(self, before: Leg, leg: Leg) -> float | None:
         """Return by how much the direction changes along ``leg`` from the front of ``before`` on.

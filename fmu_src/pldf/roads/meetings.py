@@ -89,7 +89,12 @@ class Meetings:
         silent = [end for end in ENDS if self._says_nothing(entered, end)]
         if stated in ENDS:
             silent = [end for end in silent if end == stated]
-        near = [end for end in silent if self._lies_at_front(leg, entered, end)]
+        ways = {end: Leg(entered.road, against=end == "end") for end in silent}
+        near = [
+            end
+            for end, way in ways.items()
+            if self._lies_at_front(leg, entered, end) and not self._ends.goes_back(leg, way)
+        ]
         return (self.nearest(entered, near, leg) if near else None), ""
 
     def _begins_at(self, leg: Leg, entered: Leg, end: str, junction: str) -> bool:
