@@ -82,9 +82,11 @@ def _turn(turn: Turn, knots: FloatArray) -> tuple[str, Severity]:
     if turn.count == 1:
         return f"the line turns by {angle:.1f} degrees at a point; driven as {driven}", "warning"
     length = turn.last_m - turn.first_m
+    places = f"the line turns at {turn.count} points over {length:.0f} m"
+    if abs(turn.turn_rad) < 0.5 * turn.size_rad:
+        return f"{places}, to and fro; driven as {driven} at the sharpest", "warning"
     return (
-        f"the line turns at {turn.count} points over {length:.0f} m, by {angle:.0f} degrees in all:"
-        f" a bend drawn as chords? Driven as {driven}",
+        f"{places}, by {angle:.0f} degrees in all: a bend drawn as chords? Driven as {driven}",
         "warning",
     )
 

@@ -2,9 +2,9 @@
 
 A car does not turn at a point. It rounds a corner of angle ``a``, leaving the line by ``e``, on an
 arc of radius ``e / (1 / cos(a / 2) - 1)``, about ``8 e / a²``, whose length is about ``8 e / a``:
-so far the turn is spread, half of it to each side; over no more than half of the chord to the next
-corner (which makes the polygon's own radius out of a bend drawn as chords), and at least over a
-car's length.
+so far the turn is spread, half of it to each side, but over no more than half of the chord to the
+next corner, and at least over a car's length. Corners of one bend have half of the chord between
+them in any case: that makes its own radius out of a bend drawn as chords.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..kernel.arrays import FloatArray
 from .bending import CURVATURE, Boxes, S, bent, spans_of
@@ -25,6 +26,8 @@ LANE_PLAY_M: Final = 0.5
 SPREAD_MAX_M: Final = 25.0  # to each side
 # Headings in files are rounded; a joint below this is no corner.
 TURN_MIN_RAD: Final = 5e-4
+# Corners of one bend turn the same way; the smaller of two at least so far, as a share.
+_ALIKE: Final = 1.0 / 3.0
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,7 @@ class Turn:
         first_m, last_m: where the first and the last stand, on the route.
         count: how many.
         turn_rad: all together, positive to the left.
+        size_rad: the same without signs.
         line: of the file, where the first stands; 0: not known.
     """
 
@@ -42,6 +46,7 @@ class Turn:
     last_m: float
     count: int
     turn_rad: float
+    size_rad: float
     line: int
 
 
@@ -62,16 +67,28 @@ def corners(joints: Joints, felt_per_m: float) -> tuple[Boxes, list[Turn]]:
 
 def spread(at_m: FloatArray, turn_rad: FloatArray) -> Boxes:
     """Return the curves, two per corner, that a car drives around corners in order of ``at_m``."""
-    size = np.abs(turn_rad)
-    free = np.clip(4.0 * LANE_PLAY_M / size, 0.5 * CAR_LENGTH_M, SPREAD_MAX_M)
-    chord = np.concatenate(([np.inf], np.diff(at_m), [np.inf]))
-    left = np.clip(0.5 * chord[:-1], 0.5 * CAR_LENGTH_M, free)
-    right = np.clip(0.5 * chord[1:], 0.5 * CAR_LENGTH_M, free)
+    shortest_m = 0.5 * CAR_LENGTH_M
+    free = np.clip(4.0 * LANE_PLAY_M / np.abs(turn_rad), shortest_m, SPREAD_MAX_M)
+    half = np.clip(0.5 * np.diff(at_m), shortest_m, SPREAD_MAX_M)
+    bend = _one_bend(at_m, turn_rad)
+    # Along a bend each corner has half of the chord, on its outside no less than that.
+    inner = np.maximum(np.append(half * bend, 0.0), np.append(0.0, half * bend))
+    outer = np.maximum(free, inner)
+    left = np.append(outer[:1], np.where(bend, half, np.minimum(half, outer[1:])))
+    right = np.append(np.where(bend, half, np.minimum(half, outer[:-1])), outer[-1:])
     return Boxes(
         np.concatenate((at_m - left, at_m)),
         np.concatenate((at_m, at_m + right)),
         np.concatenate((0.5 * turn_rad / left, 0.5 * turn_rad / right)),
     )
+
+
+def _one_bend(at_m: FloatArray, turn_rad: FloatArray) -> NDArray[np.bool_]:
+    """Tell of each corner but the last whether the next is another one of the same bend."""
+    size = np.abs(turn_rad)
+    alike = _ALIKE * np.maximum(size[1:], size[:-1]) < np.minimum(size[1:], size[:-1])
+    near: NDArray[np.bool_] = np.diff(at_m) <= 2.0 * SPREAD_MAX_M
+    return alike & near & (turn_rad[1:] * turn_rad[:-1] > 0.0)
 
 
 def with_boxes(knots: FloatArray, boxes: Boxes) -> FloatArray:
@@ -91,8 +108,8 @@ def _turns(at_m: FloatArray, turn_rad: FloatArray, line: FloatArray) -> list[Tur
         return []
     starts = np.concatenate(([0], np.flatnonzero(np.diff(at_m) > 2.0 * SPREAD_MAX_M) + 1))
     ends = np.append(starts[1:], len(at_m)) - 1
-    totals = np.add.reduceat(turn_rad, starts)
+    totals = (np.add.reduceat(turns, starts) for turns in (turn_rad, np.abs(turn_rad)))
     return [
-        Turn(float(at_m[i]), float(at_m[j]), int(j - i + 1), float(total), int(line[i]))
-        for i, j, total in zip(starts, ends, totals, strict=True)
+        Turn(float(at_m[i]), float(at_m[j]), int(j - i + 1), float(turn), float(size), int(line[i]))
+        for i, j, turn, size in zip(starts, ends, *totals, strict=True)
     ]
