@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..kernel.arrays import FloatArray
-from .per_metre import left_values, right_values
+from .per_metre import along
 
 # Rows of the knots' array.
 S, CURVATURE, LIMIT, GRADE, X, Y = range(6)
@@ -120,9 +120,8 @@ def _ends(sides: list[FloatArray], at: FloatArray, s_m: FloatArray) -> FloatArra
 def _side(
     knots: FloatArray, at: FloatArray, curve: Curve, ends: FloatArray, behind: bool
 ) -> FloatArray:
-    values = right_values if behind else left_values
     s_m = knots[S]
-    side = np.stack([at, *(values(s_m, row, at) for row in knots[1:])])
+    side = np.concatenate((at[None], along(s_m, knots[1:], at, behind=behind)))
     side[LIMIT] = knots[LIMIT][np.searchsorted(s_m, at, side="right") - 1]
     # Just before the first place of a span, and behind its last, nothing changes.
     outer = ends[:, 1] if behind else ends[:, 0]

@@ -16,6 +16,7 @@ from ..kernel.arrays import FloatArray
 from .polynomials import NODES, WEIGHTS, Polynomials
 from .ragged import Indices, distinct_runs, firsts, running_sums, within
 
+_AT_ONCE: Final = 1 << 16  # chords that are computed together
 STRAIGHT: Final = -1  # in ``Geometries.cubic``: no polynomial
 
 
@@ -103,11 +104,11 @@ class Geometries:
         metres = np.zeros(len(distinct), dtype=np.intp)
         np.maximum.at(metres, group, floor.astype(np.intp) + 1)
         owner, metre = within(metres)
-        whole = metre.astype(np.float64)
-        chords = _chords(start[owner], rate[owner], whole, np.ones_like(whole))
-        table = running_sums(chords, metres)
+        table = running_sums(
+            _chords(start, rate, owner, metre.astype(np.float64), np.ones(len(metre))), metres
+        )
         entry = (firsts(metres + 1))[group] + floor.astype(np.intp)
-        return table[entry] + _chords(start[group], rate[group], floor, ds - floor)
+        return table[entry] + _chords(start, rate, group, floor, ds - floor)
 
 
 def _turn(start: FloatArray, rate: FloatArray, ds: FloatArray) -> FloatArray:
@@ -115,10 +116,16 @@ def _turn(start: FloatArray, rate: FloatArray, ds: FloatArray) -> FloatArray:
 
 
 def _chords(
-    start: FloatArray, rate: FloatArray, ds: FloatArray, span: FloatArray
+    start: FloatArray, rate: FloatArray, owner: Indices, ds: FloatArray, span: FloatArray
 ) -> NDArray[np.complex128]:
-    """Return how far spirals lead over ``span`` (up to 1 m), from ``ds`` on."""
-    stations = ds[:, None] + span[:, None] * NODES
-    turn = _turn(start[:, None], rate[:, None], stations)
-    chords: NDArray[np.complex128] = span * (np.exp(1j * turn) @ WEIGHTS)
+    """Return how far the spirals ``owner`` lead over ``span`` (up to 1 m), from ``ds`` on."""
+    chords = np.zeros(len(ds), dtype=np.complex128)
+    long = np.flatnonzero(span)
+    for first in range(0, len(long), _AT_ONCE):
+        some = long[first : first + _AT_ONCE]
+        # A product with a single row is rounded otherwise: a point must not depend on how many.
+        some = np.repeat(some, 2) if len(some) == 1 else some
+        stations = ds[some, None] + span[some, None] * NODES
+        turn = _turn(start[owner[some], None], rate[owner[some], None], stations)
+        chords[some] = span[some] * (np.exp(1j * turn) @ WEIGHTS)
     return chords

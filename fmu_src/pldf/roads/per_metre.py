@@ -6,7 +6,7 @@ continent everything else would wait for the memory.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final
 
 import numpy as np
@@ -17,13 +17,15 @@ from ..kernel.arrays import FloatArray
 _AT_ONCE: Final = 1 << 16
 
 
-def at_nodes(s_m: FloatArray, values: list[FloatArray], nodes: FloatArray) -> list[FloatArray]:
-    """Return each of ``values`` at the ``nodes``, which are in order; behind jumps."""
-    found = [np.empty(len(nodes)) for _ in values]
-    for block, near in _blocks(s_m, nodes):
-        rows = right_values(s_m[near], np.stack([row[near] for row in values]), nodes[block])
-        for each, row in zip(found, rows, strict=True):
-            each[block] = row
+def along(
+    s_m: FloatArray, rows: Iterable[FloatArray], at: FloatArray, *, behind: bool = True
+) -> FloatArray:
+    """Return the ``rows`` at places in order, float64 [rows, places]; behind jumps or before."""
+    values = right_values if behind else left_values
+    rows = list(rows)
+    found = np.empty((len(rows), len(at)))
+    for block, near in _blocks(s_m, at):
+        found[:, block] = values(s_m[near], np.stack([row[near] for row in rows]), at[block])
     return found
 
 

@@ -14,7 +14,7 @@ from ..errors import ModelError
 from ..findings import Finding
 from ..kernel.arrays import FloatArray, RouteArrays
 from ..kernel.units import KMH_PER_MPS
-from .per_metre import at_nodes, lowest_limit, sharpest_curve
+from .per_metre import along, lowest_limit, sharpest_curve
 
 LENGTH_MIN_M: Final = 2.0
 LENGTH_MAX_M: Final = 1e7  # ten times across a continent; a slip of a digit must not fill memory
@@ -154,7 +154,7 @@ def route_arrays(route: Route) -> RouteArrays:
     s_m = route.s_m
     limit_mps = _repeat_last(lowest_limit(s_m, route.speed_limit_mps, nodes))
     curvature_per_m = _repeat_last(sharpest_curve(s_m, route.curvature_per_m, nodes))
-    grade, x_m, y_m = at_nodes(s_m, [route.grade, route.x_m, route.y_m], nodes)
+    grade, x_m, y_m = along(s_m, (route.grade, route.x_m, route.y_m), nodes)
     return RouteArrays(limit_mps, curvature_per_m, grade, x_m, y_m)
 
 
