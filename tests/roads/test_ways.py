@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from networks import BOTH, LEFT, NONE, RIGHT, Map, crossing
 from pldf.errors import ModelError
-from pldf.roads import RoadOptions, Route, chosen_route, read_route
+from pldf.roads import RoadOptions, Route, chosen_route, open_route, read_route
 from pldf.roads.leg import Leg
 from pldf.roads.network import Network
 from pldf.roads.ways import find_way
@@ -79,6 +79,15 @@ def test_what_the_model_of_an_fmu_says_names_a_command(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match=r"pldf route '.*my town.xodr' --start-road w") as refused:
         chosen_route(0, str(path))
     assert "--export my.csv" in str(refused.value)
+
+
+def test_what_python_says_names_keywords(tmp_path: Path) -> None:
+    path = tmp_path / "town.xodr"
+    path.write_text(crossing().text, encoding="utf-8")
+    with pytest.raises(ModelError, match=r"say where to go: start_road='w', via=\('s',\) \(or"):
+        open_route(str(path), start_road="w")
+    for via in (["ws", "s"], "ws,s"):
+        assert open_route(str(path), start_road="w", via=via).length_m > 200.0
 
 
 def test_behind_the_last_named_road_it_goes_on_to_the_next_choice(

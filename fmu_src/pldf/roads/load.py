@@ -14,7 +14,7 @@ from ..errors import ModelError
 from .csv_file import parse_route_csv
 from .listing import RoadRow, csv_row, opendrive_rows
 from .opendrive import parse_opendrive
-from .options import AS_WRITTEN, LimitUnit, OptionNeededError, RoadOptions, arguments
+from .options import AS_WRITTEN, LimitUnit, OptionNeededError, RoadOptions, arguments, keywords
 from .route import Route
 
 DATA: Final = Path(__file__).parent / "data"
@@ -126,7 +126,7 @@ def open_route(  # noqa: PLR0913 - all by keyword, as a person says them
     Args:
         name: a file, ``study`` for the shipped road, or the number of a packed route.
         start_road: id of the OpenDRIVE road to start with; None: the only possible one.
-        via: ids of the roads to pass, in this order.
+        via: ids of the roads to pass, in this order; also as a text, ``"12,45"``.
         to: id of the road that the way ends with.
         reverse: the start road is driven against the direction in which it is drawn.
         default_limit_mps: limit where the file states none and no neighbour does.
@@ -137,10 +137,14 @@ def open_route(  # noqa: PLR0913 - all by keyword, as a person says them
     Raises:
         ModelError: as ``open_road``.
     """
+    named = (via,) if isinstance(via, str) else tuple(via)
     options = RoadOptions(
-        start_road, tuple(via), to, reverse, default_limit_mps, limit_unit, signs, smoothing_m
+        start_road, named, to, reverse, default_limit_mps, limit_unit, signs, smoothing_m
     )
-    return open_road(name, options).route
+    try:
+        return open_road(name, options).route
+    except OptionNeededError as error:
+        raise ModelError(error.told(keywords)) from None
 
 
 def packed_route(route_id: int) -> Route:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, fields
+from typing import Any, Literal
 
 from ..errors import ModelError
 from ..kernel.units import KMH_PER_MPS
@@ -73,6 +73,19 @@ class OptionNeededError(ModelError):
         others = f" (or {self._others})" if self._others else ""
         ending = "" if self._ending is None else f"; {say(self._ending)} ends the way here"
         return f"{self.matter}: {say(self.suggested)}{others}{ending}"
+
+
+def said(options: RoadOptions) -> dict[str, Any]:
+    """Return those of the options that say something, by name."""
+    both = (
+        (f.name, getattr(options, f.name), getattr(AS_WRITTEN, f.name)) for f in fields(options)
+    )
+    return {name: value for name, value, usual in both if value != usual}
+
+
+def keywords(options: RoadOptions) -> str:
+    """Return the options as they are written in a call from Python."""
+    return ", ".join(f"{name}={value!r}" for name, value in said(options).items())
 
 
 def arguments(options: RoadOptions) -> str:

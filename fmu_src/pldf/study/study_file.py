@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Final
@@ -16,8 +16,8 @@ from ..errors import ModelError
 from ..findings import Finding
 from ..kernel.signals import Signal, signals_of
 from ..kernel.state import PldfState
-from ..roads import AS_WRITTEN, Road, RoadOptions, open_road
-from ..roads.options import OptionNeededError
+from ..roads import Road, RoadOptions, open_road
+from ..roads.options import OptionNeededError, said
 from ..settings import parameter_value
 from ..toml_file import Key, TomlFile, listed, shown
 from .participants import DRIVER_SIGNALS, Participant, StudySettings
@@ -202,10 +202,9 @@ def _said(value: Any) -> Any:
 
 def _keys(options: RoadOptions) -> str:
     """Return the options as they are written into the table [road]."""
-    said = {f.name: getattr(options, f.name) for f in fields(options)}
-    said = {name: v for name, v in said.items() if v != getattr(AS_WRITTEN, name)}
     written = (
-        f"{name} = {shown(list(v) if isinstance(v, tuple) else v)}" for name, v in said.items()
+        f"{name} = {shown(list(value) if isinstance(value, tuple) else value)}"
+        for name, value in said(options).items()
     )
     return ", ".join(written)
 
