@@ -166,6 +166,17 @@ def test_a_checker_that_gives_nothing_is_told(
     assert told.text == "ASAM's checker gave no result (status 1): no licence today"
 
 
+def test_a_checker_that_does_not_end_is_stopped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program = tmp_path / "program.py"
+    program.write_text("import threading; threading.Event().wait()")
+    monkeypatch.setattr(asam, "checker", lambda: [sys.executable, str(program)])
+    monkeypatch.setattr(asam, "_WAIT_S", 0.5)
+    (told,) = asam_findings(STUDY, [])
+    assert told.text == "ASAM's checker was stopped: no result within 0.5 s"
+
+
 def test_places_of_elements() -> None:
     data = (
         b'<OpenDRIVE>\n<road id="a"/>\n<road id="b &amp; c">\n<planView>\n<geometry s="7.6"/>'

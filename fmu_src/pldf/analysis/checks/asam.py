@@ -26,6 +26,7 @@ _MODULES: Final = (_PROGRAM, "qc_baselib", "pyclothoids")
 _BUNDLE: Final = "xodrBundle"  # what the checker calls itself in configurations
 _LEVELS: Final[dict[str, Severity]] = {"1": "error", "2": "warning", "3": "note"}
 _ALIKE_MAX: Final = 20  # findings of one rule
+_WAIT_S: Final = 180.0  # it takes seconds for a town, hours for 100 000 geometries in one road
 # Rules about what our own reader refuses with more words.
 _ALSO_OURS: Final = ("xml.valid_xml_document", "xml.root_tag_is_opendrive")
 HOW_TO_GET: Final = (
@@ -56,10 +57,13 @@ def asam_findings(path: Path, ours: Iterable[Finding]) -> list[Finding]:
         results = Path(folder, "results.xqar")
         configuration = Path(folder, "configuration.xml")
         configuration.write_bytes(_configuration(path, results))
-        done = subprocess.run(
-            [*command, "-c", str(configuration)],
-            capture_output=True, text=True, errors="replace", stdin=subprocess.DEVNULL, check=False,
-        )  # fmt: skip
+        try:
+            done = subprocess.run(
+                [*command, "-c", str(configuration)], check=False, timeout=_WAIT_S,
+                capture_output=True, text=True, errors="replace", stdin=subprocess.DEVNULL,
+            )  # fmt: skip
+        except subprocess.TimeoutExpired:
+            return [_note(path, f"ASAM's checker was stopped: no result within {_WAIT_S:g} s")]
         try:
             told = ElementTree.parse(results).getroot()
         except (OSError, ElementTree.ParseError):
