@@ -59,6 +59,22 @@ def test_reverse_drives_the_start_road_against_its_direction(driven: Driven) -> 
     assert driven(crossing(), start_road="e") == ["e"]
 
 
+def test_reverse_without_a_start_road_drives_the_whole_way_the_other_way_round(
+    driven: Driven,
+) -> None:
+    line = Map().road("a", (0.0, 0.0), (100.0, 0.0), front="b end", lanes=BOTH)
+    line.road("b", (200.0, 0.0), (100.0, 0.0), rear="c start", front="a end", lanes=BOTH)
+    line.road("c", (200.0, 0.0), (300.0, 0.0), rear="b start", lanes=BOTH)
+    assert driven(line) == ["a", "-b", "c"]
+    assert driven(line, reverse=True) == ["-c", "b", "-a"]
+    one_way = Map().road("a", (0.0, 0.0), (100.0, 0.0))
+    with pytest.raises(ModelError, match="road a: no lane goes against the direction"):
+        driven(one_way, reverse=True)
+    with pytest.raises(ModelError, match=r"could start at road w.*--start-road w --reverse"):
+        driven(crossing(), reverse=True)
+    assert driven(crossing(), reverse=True, via=("e",), to="w") == ["-e", "ew", "-w"]
+
+
 def test_a_choice_is_refused_with_the_ways_and_what_to_type(driven: Driven) -> None:
     with pytest.raises(ModelError) as refused:
         driven(crossing(), start_road="w")

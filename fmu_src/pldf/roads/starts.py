@@ -26,7 +26,8 @@ def start_of(
     """Return the first leg of the way.
 
     Without a start road it is the only road that nothing leads to; a closed loop starts at the
-    first road of the file. Where several could be it, the first named road is.
+    first road of the file. Where several could be it, the first named road is. A way that is to be
+    driven the other way round starts with its last road.
 
     Args:
         network: of the file.
@@ -41,9 +42,11 @@ def start_of(
     if options.start_road is not None:
         return _as_wanted(network, options.start_road, options, notes)
     found = _only_start(network, follow)
+    if isinstance(found, Leg) and options.reverse and not named:
+        found = _from_the_other_end(network, found, follow)
+    elif isinstance(found, Leg) and options.reverse:
+        found = [found.id]
     if isinstance(found, Leg):
-        if options.reverse:
-            return _as_wanted(network, found.id, options, notes)
         if found.against:
             _tell_turned(network, found, notes)
         return found
@@ -52,8 +55,27 @@ def start_of(
     raise OptionNeededError(
         f"{network.place.path}: the route could start at road {some(found)}; name one",
         replace(options, start_road=found[0]),
-        f"{some(found[1:])}; {_list_command(network)}",
+        "; ".join(filter(None, (some(found[1:]), _list_command(network)))),
     )
+
+
+def _from_the_other_end(network: Network, start: Leg, follow: Follow) -> Leg | list[str]:
+    """Return the start of the same way driven the other way round, else the roads to name."""
+    if start.against and network.has_lane(start.turned) is False:
+        return start  # it is driven against its direction, and cannot be otherwise
+    legs = follow(start)
+    if legs is None:
+        return [start.id]
+    leg = legs[-1].turned
+    if network.has_lane(leg) is False and network.has_lane(leg.turned):
+        raise _no_lane(network, leg)
+    return leg
+
+
+def _no_lane(network: Network, leg: Leg) -> ModelError:
+    way = "against" if leg.against else "along"
+    text = f"no lane goes {way} the direction in which it is drawn; leave out reverse"
+    return replace(network.place, road=leg.id).error(leg.road, text)
 
 
 def _as_wanted(network: Network, road: str, options: RoadOptions, notes: list[Finding]) -> Leg:
@@ -61,9 +83,7 @@ def _as_wanted(network: Network, road: str, options: RoadOptions, notes: list[Fi
     if network.has_lane(leg) is not False or not network.has_lane(leg.turned):
         return leg
     if options.reverse:
-        place = replace(network.place, road=road)
-        text = "no lane goes against the direction in which it is drawn; leave out reverse"
-        raise place.error(leg.road, text)
+        raise _no_lane(network, leg)
     _tell_turned(network, leg.turned, notes)
     return leg.turned
 
