@@ -322,3 +322,22 @@ def test_a_line_that_an_error_names_is_the_line_of_the_finding(
     status, report = found(path, capsys=capsys)
     (finding,) = report["findings"]
     assert (status, finding["line"], finding["place"]) == (1, 3, "participants.count")
+
+
+def test_a_network_in_which_no_way_is_named_is_no_error(tmp_path: Path, capsys: Capture) -> None:
+    path = tmp_path / "town.xodr"
+    road = (
+        '<road id="{0}" length="90" junction="-1"><type s="0" type="town">{1}</type><planView>'
+        '<geometry s="0" x="0" y="{0}" hdg="0" length="90"><line/></geometry></planView></road>'
+    )
+    speed = '<speed max="50" unit="km/h"/>'
+    path.write_text(f"<OpenDRIVE>{road.format(1, speed)}{road.format(2, '')}</OpenDRIVE>")
+    status, told = found(path, "--no-asam", capsys=capsys)
+    (note,) = told["findings"]
+    assert (status, note["severity"]) == (0, "note")
+    assert "--start-road 1" in note["text"]
+    assert "not checked" in note["consequence"]
+    status, told = found(path, "--no-asam", "--start-road", "1", capsys=capsys)
+    assert (status, told["findings"][0]["text"][:14]) == (0, "a road of 90 m")
+    # What is wrong on a way that was named, is.
+    assert found(path, "--no-asam", "--start-road", "2", capsys=capsys)[0] == 1

@@ -21,6 +21,7 @@ from ...recordings.mapping import RecordingMap, read_map, remembered_map
 from ...recordings.quality import quality_of
 from ...recordings.recording import Recording, read_recording
 from ...roads import AS_WRITTEN, RoadOptions, read_route
+from ...roads.options import OptionNeededError
 from ...route_facts import route_facts
 from ...study.participants_file import read_participants
 from ...study.study_file import read_study
@@ -101,7 +102,12 @@ def _content(recording: Recording) -> str:
 
 
 def _road(path: Path, known: Known) -> list[Finding]:
-    route = read_route(path, known.road)
+    try:
+        route = read_route(path, known.road)
+    except OptionNeededError as error:
+        if _says_a_way(known.road) or not _says_a_way(error.suggested):
+            raise
+        return [_no_way(one) for one in findings_of(error, str(path))]
     facts = route_facts(route)
     return [
         *route.notes,
@@ -111,6 +117,16 @@ def _road(path: Path, known: Known) -> list[Finding]:
             f"{len(facts.curves)} curves that bind",
         )
     ]  # fmt: skip
+
+
+def _says_a_way(options: RoadOptions) -> bool:
+    return bool(options.start_road or options.via or options.to)
+
+
+def _no_way(needed: Finding) -> Finding:
+    """Return that only the file was checked: that a network offers a choice is no fault of it."""
+    consequence = "no way was named, so links, limits and curves along one were not checked"
+    return needed._replace(severity="note", consequence=consequence)
 
 
 def _drives(path: Path, _known: Known) -> list[Finding]:
