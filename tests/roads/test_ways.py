@@ -236,9 +236,33 @@ def test_a_contact_point_that_the_road_contradicts_is_told(driven: Driven, told:
     assert driven(wrong, start_road="w", to="n") == ["w", "-x", "-n"]
     assert any(
         "junction J says that road x is met at its start, the road's own link that it is met at "
-        "its end; driven from its end on" in note
+        "its end; x is driven from its end on" in note
         for note in told
     )
+
+
+def test_a_connecting_road_that_names_the_wrong_end_is_told(
+    driven: Driven, told: list[str]
+) -> None:
+    """Only the end of w is at the junction, whatever the link says."""
+    wrong = _side_road((100.0, 0.0), (120.0, 9.0), rear="w start", front="n end")
+    assert driven(wrong.connect("J", "w", "x"), start_road="w", to="x") == ["w", "x"]
+    assert told == [
+        "warning: , line 28, road w, s = 100 m: <predecessor> of road x (line 24) names the start "
+        "of road w, which is met at its end; x is driven from its start on"
+    ]
+
+
+def test_a_connecting_road_that_leads_to_the_wrong_end_is_told(
+    driven: Driven, told: list[str]
+) -> None:
+    town = crossing()
+    town.roads[5] = town.roads[5].replace(
+        'elementId="e" contactPoint="start"', 'elementId="e" contactPoint="end"'
+    )
+    assert driven(town, start_road="w", to="e") == ["w", "we", "e"]
+    assert "<successor> names the end of road e, which is linked to here by its start" in told[0]
+    assert "driven from its start on, where the lines meet" in told[0]
 
 
 @pytest.mark.parametrize(

@@ -125,7 +125,13 @@ class Network:
     def _linked(self, leg: Leg, link: Element, road: Element) -> Step:
         stated = link.attributes.get("contactPoint", "").strip().lower()
         entered = Leg(road, against=False)
-        own = [end for end in ENDS if self._meetings.names(entered, end, leg)]
+        junction = leg.road.attributes.get("junction", "-1")  # the road behind it is linked to that
+        own = [
+            end
+            for end in ENDS
+            if self._meetings.names(entered, end, leg)
+            or self._meetings.is_at(entered, end, junction)
+        ]
         if stated in ENDS and (stated in own or not own):
             return Step(Leg(road, against=stated == "end"))
         end = self._meetings.nearest(
@@ -214,10 +220,9 @@ class Network:
         has_lane = self.has_lane(way)
         if has_lane is False or (doubt and has_lane is None):
             return None
-        if not doubt:
-            return Step(way)
-        told = self.told("warning", leg, connection, doubt, f"driven from its {end} on")
-        return Step(way, (told,))
+        doubts = filter(None, (doubt, self._meetings.misnamed(entered, end, leg)))
+        then = f"{entered.id} is driven from its {end} on"
+        return Step(way, tuple(self.told("warning", leg, connection, d, then) for d in doubts))
 
     def _directly(self, leg: Leg, connection: Element, linked: str, junction: str) -> Step | None:
         """Return the step through a direct junction, whose roads touch each other."""
