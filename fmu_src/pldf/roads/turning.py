@@ -27,7 +27,7 @@ class Turns(NamedTuple):
     """Where curvature was taken from the heading, one value per interval."""
 
     s_m: FloatArray  # its begin on the route
-    stated_per_m: FloatArray  # the larger curvature at its ends, not always finite
+    stated_per_m: FloatArray  # the larger absolute curvature at its ends, not always finite
     mean_per_m: FloatArray
 
 
@@ -44,8 +44,7 @@ def as_turned(knots: Knots, pieces: Pieces) -> tuple[Knots, Turns]:
     with np.errstate(invalid="ignore"):
         same = np.abs(linear - mean) <= _SAME_PER_M + _SAME * np.abs(mean)
     wrong = np.flatnonzero(inside & ~same)
-    ends = curvature[wrong], curvature[wrong + 1]
-    stated = np.where(np.abs(ends[0]) > np.abs(ends[1]), *ends)
+    stated = np.maximum(*np.abs((curvature[wrong], curvature[wrong + 1])))  # NaN if one is
     turns = Turns(s_m[wrong], stated, mean[wrong])
     return (_turned(knots, wrong, mean[wrong]) if len(wrong) else knots), turns
 
@@ -71,14 +70,16 @@ def told(turns: list[Turns], road: Contents, offset_m: float) -> tuple[Finding, 
     s_m, stated, mean = (np.concatenate(values) for values in zip(*turns, strict=True))
     if not len(s_m):
         return ()
-    size = np.where(np.isfinite(stated), np.abs(stated - mean), np.inf)
+    size = np.where(np.isfinite(stated), np.abs(stated - np.abs(mean)), np.inf)
     worst = int(np.argmax(size))
     own_m = s_m[worst] - offset_m
     if road.leg.against:
         own_m = road.length_m - own_m
     at = max(int(np.searchsorted(road.geometries.start_m, own_m, side="right")) - 1, 0)
     place = f"road {road.place.road}, s = {own_m:.6g} m"
-    text = f"a polynomial's curvature of {stated[worst]:.3g}/m is no turn of its line"
+    finite = np.isfinite(stated[worst])
+    curvature = f"curvature of {stated[worst]:.3g}/m" if finite else "infinite curvature"
+    text = f"a polynomial's {curvature} is no turn of its line"
     more = f" (and at {len(s_m) - 1} more places of this road)" if len(s_m) > 1 else ""
     took = f"it turns by {mean[worst]:.3g}/m there, which was taken"
     file, line = str(road.place.path), int(road.geometries.line[at])
