@@ -64,8 +64,8 @@ def test_no_bit_depends_on_how_many_knots_are_computed_together(
 ) -> None:
     whole = read(_mixed(), **options)
     arrays = route_arrays(whole)
-    for module in (knots, shapes, per_metre):
-        monkeypatch.setattr(module, "_AT_ONCE", 5)
+    for module, count in ((knots, 5), (shapes, 1), (per_metre, 2)):
+        monkeypatch.setattr(module, "_AT_ONCE", count)
     parts = read(_mixed(), **options)
     for name, values in whole.knots.items():
         np.testing.assert_array_equal(parts.knots[name], values)

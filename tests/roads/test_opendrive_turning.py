@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from opendrive_text import geometry, road
-from pldf.roads import Route
+from pldf.roads import Route, knots
 from scipy.integrate import quad
 
 Reader = Callable[..., Route]
@@ -37,7 +37,9 @@ def _road(points: Points) -> tuple[str, float, float]:
 
 
 @pytest.mark.parametrize("points", [CUSP_BEHIND, CUSP_BEFORE])
-def test_at_a_cusp_the_road_turns_as_its_heading_does(read: Reader, points: Points) -> None:
+def test_at_a_cusp_the_road_turns_as_its_heading_does(
+    read: Reader, monkeypatch: pytest.MonkeyPatch, points: Points
+) -> None:
     text, length, turn = _road(points)
     route = read(text)
     assert route.length_m == pytest.approx(length)
@@ -47,6 +49,8 @@ def test_at_a_cusp_the_road_turns_as_its_heading_does(read: Reader, points: Poin
     assert note.severity == "note"
     assert str(note).startswith(str(note.file) + ", line 7, road 7, s = ")
     assert "a polynomial's infinite curvature is no turn of its line" in str(note)
+    monkeypatch.setattr(knots, "_AT_ONCE", 3)
+    np.testing.assert_array_equal(read(text).curvature_per_m, route.curvature_per_m)
 
 
 def test_a_tight_bend_of_a_junction_keeps_its_curvature(read: Reader) -> None:
