@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from pldf.cli import main
 from pldf.errors import ModelError
 from pldf.recordings.interventions import pedal_interventions
 from pldf.report.contents import Contents, collect
+from pldf.roads import fingerprint, packed_route, write_route_csv
 
 
 def test_the_steps_of_the_intervention_fit_together(contents: Contents) -> None:
@@ -50,3 +52,21 @@ def test_a_report_on_the_wrong_road_is_refused(folder: Path, tmp_path: Path) -> 
     source = ["analyse", str(folder), "--route", str(road), "--report", str(tmp_path / "r.html")]
     assert main(source) == 1
     assert not (tmp_path / "r.html").exists()
+
+
+def test_the_road_of_the_study_file_is_found_or_said_whole(folder: Path, tmp_path: Path) -> None:
+    own = tmp_path / "own"
+    shutil.copytree(folder, own)
+    table = '[road]\nroute = "town.csv"\n'
+    (own / "study.toml").write_text((own / "study.toml").read_text() + table)
+    study = StudyFolder(own)
+    with pytest.raises(ModelError, match=r"driven on town.csv, which is not there.*--route"):
+        collect(analyse(study), study)
+    write_route_csv(packed_route(0), own / "town.csv")
+    found = collect(analyse(study), study).route.route
+    assert (found.name, fingerprint(found)) == ("town", fingerprint(packed_route(0)))
+    text = (own / "study.toml").read_text().replace("town.csv", "town.xodr")
+    (own / "study.toml").write_text(text + 'start_road = 12\nto = "Main Street"\n')
+    study = StudyFolder(own)
+    with pytest.raises(ModelError, match=r"town.xodr \(start_road = 12, to = Main Street\)"):
+        collect(analyse(study), study)

@@ -29,6 +29,7 @@ from ..roads import Route, fingerprint, open_route, route_arrays
 from ..route_facts import RouteFacts, route_facts
 from ..study.own_files import STUDY, VERSIONS
 from ..study.participants_file import PARTICIPANTS
+from ..study.study_file import read_study
 from .own_versions import read_parameters, read_text
 
 LONG_RUN: Final = "long_run.csv"
@@ -146,11 +147,19 @@ def _road_assumed(study: StudyFolder) -> Finding:
 
 
 def _route_of(study: StudyFolder) -> Route:
-    """Return the route of the study file, if that can be found without knowing its place."""
-    name = str(study.study_file.get("road", {}).get("route", "study"))
-    if name != "study" and not name.isdigit():
-        raise ModelError(f"{study.folder}: driven on {name}; name the route with --route")
-    return open_route(name)
+    """Return the route of the study file, if its road is where that says."""
+    road = study.study_file.get("road", {})
+    name = str(road.get("route", "study"))
+    if name == "study" or name.isdigit():
+        return open_route(name)
+    try:
+        return read_study(study.folder / STUDY).settings.road.route
+    except ModelError:
+        way = ", ".join(f"{key} = {value}" for key, value in road.items() if key != "route")
+        raise ModelError(
+            f"{study.folder}: driven on {name}{f' ({way})' if way else ''}, which is not there as "
+            "the study file says it; name the route with --route"
+        ) from None
 
 
 def _function(values: Mapping[str, float]) -> DrivingFunction:
