@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hostile_files import damaged, with_other_blocks
+from hostile_files import damaged, with_marks, with_other_blocks
 from native_drives import CASES, by_source
 from native_hosts import HEADERS, MODELS, PLATFORMS, WARNINGS, Hosts, Value, host_sources, missing
 from pldf.build import fmus as fmu_build
@@ -167,7 +167,8 @@ def test_damaged_routes_and_scripts(
 ) -> None:
     good = sanitized.hosts.fmu("linux64", 2, model).folder / "resources" / kind / "0.prepared"
     files = []
-    for number, data in enumerate(damaged(good.read_bytes())):
+    others = with_marks(good.read_bytes()) if kind == "route" else ()
+    for number, data in enumerate((*damaged(good.read_bytes()), *others)):
         path = tmp_path / f"{number}.prepared"
         path.write_bytes(data)
         settings = {f"{kind}_file": str(path), **({"kind": 1} if kind == "script" else {})}

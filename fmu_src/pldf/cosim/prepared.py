@@ -23,7 +23,8 @@ _ALIGNMENT: Final = 64
 
 def prepared_route(route: Route) -> bytes:
     """Return the file of ``route`` with the arrays that the kernel needs."""
-    lines = mark_lines(route.marks, exact=False)
+    there = [mark for mark in route.marks if mark.s_m <= route.length_m]
+    lines = mark_lines(there, exact=False)
     return _prepared("route", fingerprint(route), route_arrays(route), route.has_line, lines)
 
 

@@ -45,7 +45,7 @@ static void judge(Search *search, const Profile *found, const char *path) {
 static void look_at(void *context, const char *name) {
     Search *search = context;
     Profile found = {0};
-    char path[PATH_SIZE + 256], why[REASON_SIZE];
+    char path[PATH_SIZE], why[REASON_SIZE];
     if (!is_profile_of_driver(search, name)) return;
     if (snprintf(path, sizeof path, "%s/%s", search->folder, name) >= PATH_SIZE) return;
     if (disk_read(path, "PLDF-PROFILE ", &found.bytes, &found.size, why) == READ_DONE &&
