@@ -214,7 +214,7 @@ def test_what_is_smoothed_turns_as_it_is_drawn(spacing_m: float) -> None:
     knots = knots_of(s, noise + bend)
     after, told = judge(knots)
     assert told
-    assert turn(after, 0.0, 3000.0) == pytest.approx(turn(knots, 0.0, 3000.0), abs=0.03)
+    assert turn(after, 0.0, 3000.0) == pytest.approx(turn(knots, 0.0, 3000.0), abs=1e-3)
     for start in range(0, 2400, 100):
         own = turn(knots, start, start + 600.0)
         # Two means of 65 samples, one at each end, may each be off by their noise.

@@ -146,7 +146,7 @@ def _denoised(
 ) -> tuple[FloatArray, list[Noise]]:
     """Replace the curvature in the spans by its adaptive means."""
     found: list[Noise] = []
-    middles: list[FloatArray | tuple[float, ...]] = []
+    middles: list[FloatArray] = []
     means: list[FloatArray] = []
     for span in spans_m:
         part = _part(knots, *span)
@@ -157,14 +157,18 @@ def _denoised(
         inside = (middle >= span[0]) & (middle <= span[1])
         sigma = _sigma(samples[inside])
         smooth = _adaptive_means(samples, sigma)
-        ends = np.interp(span, middle, smooth)
-        middles += [span[:1], middle[inside], span[1:]]
-        means += [ends[:1], smooth[inside], ends[1:]]
-        sharpest = (_sharpest(part, span), float(np.max(np.abs(np.concatenate(means[-3:])))))
+        at_m = np.concatenate((span[:1], middle[inside], span[1:]))
+        value = np.interp(at_m, middle, smooth)
+        # From end to end the road turns as before.
+        drawn = float(np.diff(turned(part, np.array(span)))[0])
+        value += (drawn - float(np.trapezoid(value, at_m))) / (span[1] - span[0])
+        middles.append(at_m)
+        means.append(value)
+        sharpest = (_sharpest(part, span), float(np.max(np.abs(value))))
         found.append(Noise(*span, sigma, spacing, sharpest))
-    at_m, value = np.concatenate(middles), np.concatenate(means)
+    every_m, mean = np.concatenate(middles), np.concatenate(means)
     return bent(
-        knots, _to_the_ends(knots, spans_m), at_m, lambda s_m, _: np.interp(s_m, at_m, value)
+        knots, _to_the_ends(knots, spans_m), every_m, lambda s_m, _: np.interp(s_m, every_m, mean)
     ), found
 
 
@@ -239,11 +243,10 @@ def _adaptive_means(samples: FloatArray, sigma: float) -> FloatArray:
         fits &= low <= high
         taken = np.where(fits, longest, taken)
         longest = np.where(fits, mean, longest)
-    # Over the longest window, and over all, the road turns as it is drawn.
+    # Over the longest window the road turns as it is drawn.
     left = samples - taken
     total = np.concatenate(([0.0], np.cumsum(left)))
-    taken = taken + (total[index + reach + 1] - total[index - reach]) / count
-    turning: FloatArray = taken + np.mean(samples - taken)
+    turning: FloatArray = taken + (total[index + reach + 1] - total[index - reach]) / count
     return turning
 
 
