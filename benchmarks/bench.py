@@ -28,6 +28,7 @@ from fmu_step import time_fmu
 from kernel_times import STUDY_KM, peak_memory_mb, plan_and_learn, step_times, toppra_s
 from pldf.cosim.which_fmus import up_to_date
 from pldf.kernel.state import PldfState
+from road_times import road_times
 from study_times import study_times
 
 from vehicle_models.driver_state import DriverState
@@ -56,6 +57,7 @@ def main() -> int:
         "machine": {"python": platform.python_version(), "processor": platform.machine()},
         "command_cpu_s": command_times(),
         "study_wall_s": study_times(),
+        "roads": road_times(),
         "fmu": {name: _fmu(options.dist / f"{name}.fmu", RECORDS[name]) for name in RECORDS},
         "kernel_step": step_times(),
         "toppra_4.5_km_s": toppra_s(),

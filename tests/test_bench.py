@@ -45,6 +45,17 @@ def test_whole_commands_are_measured(monkeypatch: pytest.MonkeyPatch) -> None:
     assert all(cpu_s > 0.0 for cpu_s in times.values())
 
 
+def test_reading_roads_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(BENCHMARKS)
+    import road_times  # noqa: PLC0415 - found by now
+
+    times = road_times.road_times(many=50, long_m=2000.5)
+    assert set(times) == {"50 geometries", "2.0005 km", "2.0005 km, CSV"}
+    for measured in times.values():
+        assert 0.0 < measured["read_s"] <= measured["read_and_fingerprint_s"]
+        assert 0.0 < measured["peak_memory_read_mb"] <= measured["peak_memory_mb"]
+
+
 def test_whole_studies_are_measured(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(BENCHMARKS)
     import study_times  # noqa: PLC0415 - found by now
