@@ -9,7 +9,15 @@ import numpy as np
 import pytest
 from opendrive_text import RIGHT_100, SHAPES, geometry, road, straight
 from pldf.errors import ModelError
-from pldf.roads import RoadOptions, Route, knots, per_metre, route_arrays, xml_parser
+from pldf.roads import (
+    RoadOptions,
+    Route,
+    knots,
+    per_metre,
+    quadrature,
+    route_arrays,
+    xml_parser,
+)
 from pldf.roads import geometry as shapes
 from pldf.roads.load import read_route
 from pldf.roads.opendrive import parse_opendrive
@@ -64,7 +72,7 @@ def test_no_bit_depends_on_how_many_knots_are_computed_together(
 ) -> None:
     whole = read(_mixed(), **options)
     arrays = route_arrays(whole)
-    for module, count in ((knots, 5), (shapes, 1), (per_metre, 2)):
+    for module, count in ((knots, 5), (shapes, 3), (quadrature, 1), (per_metre, 2)):
         monkeypatch.setattr(module, "_AT_ONCE", count)
     parts = read(_mixed(), **options)
     for name, values in whole.knots.items():

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernel.arrays import FloatArray
-from .polynomials import NODES, WEIGHTS, Polynomials
+from .polynomials import Polynomials
+from .quadrature import NODES, means
 from .ragged import Indices, distinct_runs, firsts, running_sums, within
 
-_AT_ONCE: Final = 1 << 16  # chords that are computed together
+_AT_ONCE: Final = 1 << 14  # chords that are computed together
 STRAIGHT: Final = -1  # in ``Geometries.cubic``: no polynomial
 
 
@@ -123,9 +124,7 @@ def _chords(
     long = np.flatnonzero(span)
     for first in range(0, len(long), _AT_ONCE):
         some = long[first : first + _AT_ONCE]
-        # A product with a single row is rounded otherwise: a point must not depend on how many.
-        some = np.repeat(some, 2) if len(some) == 1 else some
         stations = ds[some, None] + span[some, None] * NODES
         turn = _turn(start[owner[some], None], rate[owner[some], None], stations)
-        chords[some] = span[some] * (np.exp(1j * turn) @ WEIGHTS)
+        chords[some] = span[some] * means(np.exp(1j * turn))
     return chords

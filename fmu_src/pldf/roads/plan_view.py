@@ -198,9 +198,11 @@ class GeometryTable:
     def shape_faults(self, rows: Rows) -> list[tuple[int, str]]:
         """Return line and text of each number of the shapes that is none, and of missing shapes."""
         found: list[tuple[int, str]] = []
-        finite = np.concatenate(([0], np.cumsum(~np.isfinite(self._numbers.all()))))
-        ends = rows.first_number + _NUMBERS[rows.kind]
-        for at in np.flatnonzero(finite[ends] > finite[rows.first_number]):
+        self._numbers.all()
+        bad = np.array(sorted(self._numbers.none), dtype=np.intp)
+        first = np.searchsorted(bad, rows.first_number)
+        ends = np.searchsorted(bad, rows.first_number + _NUMBERS[rows.kind])
+        for at in np.flatnonzero(ends > first):
             tag, names = _SHAPES[rows.kind[at]]
             for number, name in enumerate(names, int(rows.first_number[at])):
                 if number in self._numbers.none:

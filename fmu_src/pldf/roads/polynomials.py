@@ -13,12 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernel.arrays import FloatArray
+from .quadrature import NODES, means
 from .ragged import Indices, distinct_runs, firsts, running_sums, within
 
-# Gauss-Legendre nodes and weights on [0, 1]: exact far beyond 1e-9 m over 1 m of any road.
-_GAUSS: Final = np.polynomial.legendre.leggauss(5)
-NODES: Final[FloatArray] = 0.5 * (_GAUSS[0] + 1.0)
-WEIGHTS: Final[FloatArray] = 0.5 * _GAUSS[1]
 _TABLE_STEP_M: Final = 0.25
 # A polynomial longer or shorter than its geometry by more than this share is a wrong pRange.
 _LENGTH_TOLERANCE: Final = 0.05
@@ -98,7 +95,7 @@ class Polynomials:
         stations = (cell * step[owner])[:, None] + step[owner, None] * NODES
         u, v = (self.cubics[owner, four].T[..., None] for four in (slice(4), slice(4, 8)))
         pace = np.hypot(_slope(u, stations), _slope(v, stations))
-        arc_m = running_sums(step[owner] * (pace @ WEIGHTS), cells)
+        arc_m = running_sums(step[owner] * means(pace), cells)
         holder, index = within(cells + 1)
         last = index == cells[holder]
         parameter = np.where(last, self.parameter_end[holder], index * step[holder])
