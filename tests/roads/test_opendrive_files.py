@@ -94,6 +94,10 @@ def test_a_road_that_cannot_be_decoded_is_refused_with_its_line(
             "line 7, road 1: the polynomial is .* check length and pRange",
         ),
         (
+            road("1", geometry(0, 100, SHAPES["normalized"].replace("normalized", "per cent"))),
+            "line 7, road 1: <paramPoly3> attribute pRange is neither arcLength nor normalized",
+        ),
+        (
             straight("1", inside='<type s="0"><speed max="0"/></type>'),
             r"line 5, road 1: speed limit 0 m/s \(no unit given\) must lie above 0",
         ),

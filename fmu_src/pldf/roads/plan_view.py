@@ -19,9 +19,9 @@ from .ragged import Indices
 from .xml_tree import Element, as_number, is_plain, no_number
 
 POSE: Final = ("s", "x", "y", "hdg", "length")
-NO_SHAPE, LINE, ARC, SPIRAL, POLY3, NORMALIZED, ARC_LENGTH = range(7)
+NO_SHAPE, LINE, ARC, SPIRAL, POLY3, NORMALIZED, ARC_LENGTH, UNKNOWN_RANGE = range(8)
 _UV: Final = ("aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV")
-# By kind: the element and its numbers. Of paramPoly3 there are two, by pRange.
+# By kind: the element and its numbers. Of paramPoly3 there are three, by pRange.
 _SHAPES: Final[tuple[tuple[str, tuple[str, ...]], ...]] = (
     ("", ()),
     ("line", ()),
@@ -30,8 +30,10 @@ _SHAPES: Final[tuple[tuple[str, tuple[str, ...]], ...]] = (
     ("poly3", ("a", "b", "c", "d")),
     ("paramPoly3", _UV),
     ("paramPoly3", _UV),
+    ("paramPoly3", _UV),
 )
 _KINDS: Final = {name: kind for kind, (name, _) in enumerate(_SHAPES[:ARC_LENGTH])}
+_RANGES: Final = {"normalized": NORMALIZED, "arclength": ARC_LENGTH}
 _NUMBERS: Final = np.array([len(names) for _, names in _SHAPES])
 _AT_ONCE: Final = 50_000  # texts that wait until they are made numbers
 _TEXT_MAX: Final = 50  # characters of a text that is no number
@@ -91,8 +93,7 @@ class _Numbers:
 
 
 def _param_poly3(attributes: dict[str, str]) -> int:
-    by_arc_length = attributes.get("pRange", "").lower() == "arclength"
-    return ARC_LENGTH if by_arc_length else NORMALIZED
+    return _RANGES.get(attributes.get("pRange", "normalized").strip().lower(), UNKNOWN_RANGE)
 
 
 class GeometryTable:
@@ -210,6 +211,8 @@ class GeometryTable:
                     found.append((int(rows.shape_line[at]), text))
         missing = "no line, arc, spiral, poly3 or paramPoly3 in this geometry"
         found += [(int(line), missing) for line in rows.line[rows.kind == NO_SHAPE]]
+        unknown = "<paramPoly3> attribute pRange is neither arcLength nor normalized; correct it"
+        found += [(int(line), unknown) for line in rows.shape_line[rows.kind == UNKNOWN_RANGE]]
         return found
 
     def _convert(self) -> None:
