@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +59,7 @@ class Drives:
 
 
 NAME = "driver-000000_route-92a6126a3ee130f8"
+OLDER = f"driver-000000_route-{'f' * 16}.pldf"
 
 
 @pytest.fixture(params=PLATFORMS)
@@ -81,6 +83,25 @@ def test_what_was_learned_beside_another_drive_is_kept_beside_its_profile(
     assert drives.drive(instances=3) == [results] * 3
     kept = {f".conflict-{n}.pldf": profile for n in (1, 2)}
     assert drives.profiles() == {".pldf": profile, **kept}
+
+
+def test_a_profile_of_an_older_reading_is_told_and_left_alone(
+    drives: Drives, learned: tuple[bytes, bytes]
+) -> None:
+    """In a folder with letters beyond ASCII; what is learned now gets a file of its own."""
+    _, profile = learned
+    older = encode(replace(decode(profile, NAME), route="f" * 16))
+    drives.store.mkdir(parents=True)
+    (drives.store / OLDER).write_bytes(older)
+    results = drives.folder / "results"
+    process = drives.hosts.start(
+        drives.platform, "replay", drives.description, drives.script, results, cwd=drives.folder
+    )
+    told = process.communicate()[1].decode(errors="replace")
+    assert process.returncode == 0
+    assert "was probably learned on an older reading of this road (100 of 100 m" in told
+    assert f"/{OLDER} --route ROAD" in told.replace("\\", "/")
+    assert drives.profiles() == {".pldf": profile, OLDER: older}
 
 
 def test_a_profile_of_release_0_2_0_is_upgraded(

@@ -134,7 +134,8 @@ def _search(
             if here < best:
                 best = here
                 best_s = here_s
-            if here <= worst and (chosen_s < 0.0 or _is_nearer(here_s, chosen_s, near_m)):
+            nearer = abs(here_s - near_m) < abs(chosen_s - near_m)
+            if here <= worst and (chosen_s < 0.0 or nearer):
                 chosen = here
                 chosen_s = here_s
         before = here
@@ -148,10 +149,6 @@ def _search(
     if chosen_s < 0.0:
         return best_s, best, best_s, best
     return best_s, best, chosen_s, chosen
-
-
-def _is_nearer(one_m: float, other_m: float, near_m: float) -> bool:
-    return abs(one_m - near_m) < abs(other_m - near_m)
 
 
 def _foot(route: RouteArrays, st: PldfState, i: int) -> tuple[float, float, bool]:

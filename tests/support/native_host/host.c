@@ -8,11 +8,11 @@
 #include "library.h"
 
 int errors;
+bool tells_warnings;
 
 void told(int status, const char *text) {
-    if (status != ERROR) return;
-    errors++;
-    fprintf(stderr, "%s\n", text);
+    if (status == ERROR) errors++;
+    if (status == ERROR || (status && tells_warnings)) fprintf(stderr, "%s\n", text);
 }
 
 static void read_variable(Variable *list, size_t *count, const char *value) {

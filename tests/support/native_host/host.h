@@ -70,6 +70,7 @@ struct Api {
 
 extern const Api fmi2, fmi3;
 extern int errors; /* told to a logger since it was last set to 0 */
+extern bool tells_warnings; /* on stderr, as errors always are */
 void told(int status, const char *text);
 
 Fmu *fmu_open(const char *description);

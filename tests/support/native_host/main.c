@@ -13,6 +13,7 @@
 
 static void drive(const char *job, char **arguments, int count) {
     Fmu *fmu = fmu_open(arguments[0]);
+    tells_warnings = !strcmp(job, "replay");
     if (!strcmp(job, "replay")) replay(fmu, arguments[1], arguments + 2, count - 2);
     else if (!strcmp(job, "hostile")) 
         hostile(fmu, atol(arguments[1]), count > 2 ? (uint32_t)atol(arguments[2]) : SEED);
