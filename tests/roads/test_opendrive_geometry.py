@@ -78,3 +78,15 @@ def test_grade_is_the_slope_of_the_elevation(read: Reader) -> None:
     s = np.arange(0.0, 50.0)
     np.testing.assert_allclose(grade[:50], 0.01 + 0.0002 * s - 0.000003 * s * s, atol=1e-12)
     np.testing.assert_allclose(grade[50:], -0.02)
+
+
+def test_heights_that_no_road_has_are_refused_with_their_place(read: Reader) -> None:
+    """What is read can be exported, and a route file takes no grade above 1."""
+    inside = RIGHT_100 + (
+        '<elevationProfile><elevation s="0" a="0" b="0" c="0" d="0"/>'
+        '<elevation s="60" a="0" b="1.125" c="0" d="0"/></elevationProfile>'
+    )
+    message = r"line \d+, road 1, s = 60 m .*grade = 1\.125, steeper than 45 degrees; are heights"
+    with pytest.raises(ModelError, match=message):
+        read(straight("1", inside=inside))
+    assert read(straight("1", inside=inside.replace("1.125", "1.0"))).length_m == 100.0

@@ -20,7 +20,7 @@ from .curves import judged
 from .kinks import CAR_LENGTH_M
 from .line_check import line_doubts
 from .marks import mark_lines, marks_in
-from .route import COLUMNS, Route, fingerprint, first_fault
+from .route import COLUMNS, GRADE_MAX, Route, fingerprint, first_fault
 from .sampling import NO_JOINTS
 
 # What a knot may hold beyond being numbers is the route's affair: ``first_fault``.
@@ -32,7 +32,13 @@ ROUTE: Final = Format(
         Column("curvature_per_m", unit="1/m"),
         Column("speed_limit_mps", unit="m/s"),
         # A slope in percent, taken for a share, would be a wall.
-        Column("grade", low=-1.0, high=1.0, wanted="rise over run, such as 0.05", needed=False),
+        Column(
+            "grade",
+            low=-GRADE_MAX,
+            high=GRADE_MAX,
+            wanted="rise over run, such as 0.05",
+            needed=False,
+        ),
         Column("x_m", unit="m", needed=False),
         Column("y_m", unit="m", needed=False),
     ),

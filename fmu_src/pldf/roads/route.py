@@ -22,6 +22,7 @@ LENGTH_MAX_M: Final = 1e7  # ten times across a continent; a slip of a digit mus
 LIMIT_MAX_MPS: Final = 300.0 / KMH_PER_MPS
 # Curves tighter than 1 m do not exist on roads; broken polynomials and kinks of a line do.
 CURVATURE_MAX_PER_M: Final = 1.0
+GRADE_MAX: Final = 1.0  # steeper than any road; heights in another unit than metres are
 # No car can be there: its inputs would count as invalid (kernel/drive.py).
 PLACE_MAX_M: Final = 1e8
 COLUMNS: Final = ("s_m", "curvature_per_m", "speed_limit_mps", "grade", "x_m", "y_m")
@@ -120,6 +121,10 @@ def _numeric_faults(knots: dict[str, FloatArray], sharp: bool) -> list[tuple[int
         _first(
             (np.abs(knots["curvature_per_m"]) > CURVATURE_MAX_PER_M) & sharp,
             "curvature_per_m = {curvature_per_m:g}: a curve tighter than 1 m; correct the line",
+        ),
+        _first(
+            np.abs(knots["grade"]) > GRADE_MAX,
+            "grade = {grade:.4g}, steeper than 45 degrees; are heights in metres?",
         ),
         *(
             _first(
