@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from opendrive_text import geometry, road
 from pldf.roads import Route, open_route, packed_route, read_route, route_arrays, write_route_csv
-from pldf.roads.curves import judged
-from pldf.roads.geometry import Geometries
-from pldf.roads.sampling import NO_JOINTS, Joints
+from pldf.roads.curves.joints import NO_JOINTS, Joints
+from pldf.roads.curves.judge import judged
+from pldf.roads.opendrive.geometry import Geometries
 
 Reader = Callable[..., Route]
 Array = NDArray[np.float64]

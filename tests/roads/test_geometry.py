@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from pldf.kernel.arrays import FloatArray
-from pldf.roads.geometry import Geometries, Points
-from pldf.roads.polynomials import GeometryError, Polynomials
+from pldf.roads.opendrive.geometry import Geometries, Points
+from pldf.roads.opendrive.polynomials import GeometryError, Polynomials
 from scipy.special import fresnel
 
 Cubic = tuple[float, float, float, float]

@@ -80,7 +80,7 @@ def test_a_bend_between_roads_is_a_corner(read: Reader) -> None:
     route = read(*two(300.0, 0.0, 0.35))
     (note,) = route.notes
     assert "turns by 20.1 degrees at a point" in note.text
-    assert note.place == "road b, s = 0 m (300 m of the route)"
+    assert note.place == "road b, s = 0.0 m (300.0 m of the route)"
     near = np.abs(np.asarray(route_arrays(route).curvature_per_m))
     assert np.sum(near) == pytest.approx(0.35, rel=0.15)
 

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 from opendrive_text import SHAPES, geometry, road, straight
 from pldf.errors import ModelError
-from pldf.roads import Route, read_route, xml_parser
-from pldf.roads.xml_tree import Element
+from pldf.roads import Route, read_route
+from pldf.roads.opendrive import xml_parser
+from pldf.roads.opendrive.xml_tree import Element
 
 Reader = Callable[..., Route]
 

@@ -12,17 +12,16 @@ from pldf.errors import ModelError
 from pldf.roads import (
     RoadOptions,
     Route,
-    knots,
     per_metre,
-    quadrature,
     route_arrays,
-    xml_parser,
 )
-from pldf.roads import geometry as shapes
+from pldf.roads.knots import knots
 from pldf.roads.load import read_route
-from pldf.roads.opendrive import parse_opendrive
-from pldf.roads.plan_view import PlanView
-from pldf.roads.xml_tree import Element
+from pldf.roads.opendrive import geometry as shapes
+from pldf.roads.opendrive import quadrature, xml_parser
+from pldf.roads.opendrive.plan_view import PlanView
+from pldf.roads.opendrive.xml_tree import Element
+from pldf.roads.opendrive_file import parse_opendrive
 
 Reader = Callable[..., Route]
 

@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from opendrive_text import geometry, road
-from pldf.roads import Route, knots
+from pldf.roads import Route
+from pldf.roads.knots import knots
 from scipy.integrate import quad
 
 Reader = Callable[..., Route]

@@ -19,12 +19,12 @@ from networks import BOTH, LEFT, NONE, RIGHT, Map
 from pldf.errors import ModelError
 from pldf.findings import Finding
 from pldf.roads import RoadOptions
-from pldf.roads.leg import Leg
-from pldf.roads.network import Network
+from pldf.roads.opendrive.leg import Leg
+from pldf.roads.opendrive.xml_parser import parse_xml
+from pldf.roads.opendrive.xml_tree import Place
 from pldf.roads.options import OptionNeededError
-from pldf.roads.ways import find_way
-from pldf.roads.xml_parser import parse_xml
-from pldf.roads.xml_tree import Place
+from pldf.roads.ways.network import Network
+from pldf.roads.ways.ways import find_way
 
 # A road in one direction: its id, and whether it is driven against the one in which it is drawn.
 Directed = tuple[str, bool]

@@ -11,7 +11,7 @@ from opendrive_text import RIGHT_100, lane, link, straight
 from pldf.errors import ModelError
 from pldf.kernel.arrays import FloatArray
 from pldf.roads import Route, route_arrays
-from pldf.roads.sign_types import country_rows, sign_type
+from pldf.roads.limits.sign_types import country_rows, sign_type
 
 KMH = 1.0 / 3.6
 Reader = Callable[..., Route]

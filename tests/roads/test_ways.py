@@ -11,11 +11,11 @@ import pytest
 from networks import BOTH, LEFT, NONE, RIGHT, Map, crossing
 from pldf.errors import ModelError
 from pldf.roads import RoadOptions, Route, chosen_route, open_route, read_route
-from pldf.roads.leg import Leg
-from pldf.roads.network import Network
-from pldf.roads.ways import find_way
-from pldf.roads.xml_parser import parse_xml
-from pldf.roads.xml_tree import Place
+from pldf.roads.opendrive.leg import Leg
+from pldf.roads.opendrive.xml_parser import parse_xml
+from pldf.roads.opendrive.xml_tree import Place
+from pldf.roads.ways.network import Network
+from pldf.roads.ways.ways import find_way
 
 Driven = Callable[..., list[str]]
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from .csv_file import write_route_csv
-from .listing import RoadRow
 from .load import Road, chosen_route, open_road, open_route, packed_route, read_route, roads_of
 from .options import AS_WRITTEN, RoadOptions
 from .route import Mark, Route, fingerprint, route_arrays
+from .ways.listing import RoadRow
 
 __all__ = [
     "AS_WRITTEN",

@@ -16,12 +16,12 @@ import numpy as np
 from ..files.tables import Column, Fault, Format, Table, parse_table, write_table
 from ..findings import Finding
 from ..kernel.arrays import FloatArray
-from .curves import judged
-from .kinks import CAR_LENGTH_M
+from .curves.joints import NO_JOINTS
+from .curves.judge import judged
+from .curves.kinks import CAR_LENGTH_M
 from .line_check import line_doubts
 from .marks import mark_lines, marks_in
 from .route import COLUMNS, GRADE_MAX, Route, fingerprint, first_fault
-from .sampling import NO_JOINTS
 
 # What a knot may hold beyond being numbers is the route's affair: ``first_fault``.
 ROUTE: Final = Format(

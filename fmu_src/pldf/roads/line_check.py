@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from ..kernel.arrays import FloatArray
-from .bending import S, X, Y, turned
+from .curves.bending import S, X, Y, turned
 
 # Of chords that meet: so long at least, or as two knots are apart.
 _CHORD_M: Final = 50.0

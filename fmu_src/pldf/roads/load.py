@@ -12,10 +12,10 @@ from typing import Final
 
 from ..errors import ModelError
 from .csv_file import parse_route_csv
-from .listing import RoadRow, csv_row, opendrive_rows
-from .opendrive import parse_opendrive
+from .opendrive_file import parse_opendrive
 from .options import AS_WRITTEN, LimitUnit, OptionNeededError, RoadOptions, arguments, keywords
 from .route import Route
+from .ways.listing import RoadRow, csv_row, opendrive_rows
 
 DATA: Final = Path(__file__).parent / "data"
 # Index = route_id. Only ever append: studies refer to routes by this number.

@@ -20,8 +20,8 @@ from typing import Final
 import numpy as np
 
 from .csv_file import write_route_csv
-from .geometry import Geometries
 from .load import DATA, read_route
+from .opendrive.geometry import Geometries
 
 NAME: Final = "Study road"
 LENGTH_M: Final = 4500

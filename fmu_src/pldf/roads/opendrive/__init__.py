@@ -1,0 +1,1 @@
+"""OpenDRIVE files: their roads, a way through them, and its knots."""

@@ -1,0 +1,1 @@
+"""A way through a network of roads: which are driven, in which order and direction."""
