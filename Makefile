@@ -76,7 +76,8 @@ $(BUILT): $(READY) $(FMU_SOURCES)
 	@touch $@
 
 # Exactly the packages of requirements-dev.txt, each checked against its hash, and no others: the file
-# is whole (pyproject.toml, tool.uv, says why nobody asks what they need). Then this one. The stamp is written last, so an interrupted set-up is repeated.
+# is whole (pyproject.toml, tool.uv, says why nobody asks what they need). Then this one. The stamp
+# is written last, so an interrupted set-up is repeated.
 $(READY): pyproject.toml requirements-dev.txt
 	@test -n "$(PYTHON)" || { echo "make: no Python 3.11 or newer found;" \
 		"install one or name it: make PYTHON=/path/to/python3.11 $(MAKECMDGOALS)" >&2; exit 1; }

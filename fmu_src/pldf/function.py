@@ -9,14 +9,12 @@ from typing import Final, cast
 import numpy as np
 
 from .errors import ModelError
+from .function_words import INPUT_TEXT, KEPT_BESIDE, NO_STORE, OLDER_READING
 from .instance import Arrays, Instance, Level, views, zeros
 from .kernel import drive
 from .kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from .kernel.codes import (
-    INPUT_INVALID,
     INPUT_OK,
-    OFF_ROUTE,
-    POSITION_JUMP,
     PROFILE_BASE,
     PROFILE_LOADED,
     PROFILE_NOT_PERSISTED,
@@ -42,32 +40,8 @@ from .profiles.store import (
 from .profiles.stored_profile import COLUMN_NAMES
 from .roads import Mark, Route, chosen_route, fingerprint, route_arrays
 
-INPUT_TEXT: Final = {
-    INPUT_OK: "inputs are valid again",
-    INPUT_INVALID: "an input is not a finite, plausible number: mode FAULT, safe request",
-    OFF_ROUTE: "the vehicle is off the route: function inactive",
-    POSITION_JUMP: "the position jumped: function inactive until it is reactivated",
-}
-
-NO_STORE: Final = (
-    "no profile store: nothing is loaded or saved. Set the parameter profile_store or the "
-    f"environment variable {STORE_VARIABLE} to a folder."
-)
-
 # What a drive leaves for the next one and a file keeps of it.
 LEARNED: Final = tuple(name for name in NextArrays._fields if name in COLUMN_NAMES)
-
-KEPT_BESIDE: Final = (
-    "it is left as it is; the drive goes on with the base profile, and what it teaches is kept in "
-    "a file of its own"
-)
-
-# A printf format, the same in the native FMUs: file, metres, file.
-OLDER_READING: Final = (
-    "%s was probably learned on an older reading of this road (%d of 100 m have the same base "
-    "speed); the drive goes on with the base profile, and that file is left as it is. To carry "
-    "over what was learned: pldf profiles move %s --route ROAD, with the road's file and options"
-)
 
 # Bounds of every profile, and what the base profile is planned with: it must keep to them. Where 0
 # is in the range of a parameter, it stands for no bound.

@@ -8,7 +8,8 @@ from __future__ import annotations
 from typing import Any, Final
 
 from ...compiled import KERNEL_MODULES
-from ...function import BOUNDS, INPUT_TEXT, Files
+from ...function import BOUNDS, Files
+from ...function_words import INPUT_TEXT
 from ...kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from ...kernel.drive import drive_step, refresh
 from ...kernel.learning import learn_drive

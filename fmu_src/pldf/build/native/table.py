@@ -12,7 +12,8 @@ from typing import Any, Final
 
 from ...fmi.phases import Phase
 from ...fmi.session import STEP_MAX_S
-from ...function import LEARNED, OLDER_READING
+from ...function import LEARNED
+from ...function_words import OLDER_READING
 from ...kernel.arrays import NextArrays, ProfileArrays, TraceArrays
 from ...kernel.codes import BOUND, LOCALIZATION, OUTCOME, PROFILE_STATUS
 from ...kernel.ranges import LAST_NODE, NODES, Range, columns_of, ranges_of

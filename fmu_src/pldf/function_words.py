@@ -1,0 +1,32 @@
+"""What the driving function says of its inputs and its profiles, native or not."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from .kernel.codes import INPUT_INVALID, INPUT_OK, OFF_ROUTE, POSITION_JUMP
+from .profiles.store import STORE_VARIABLE
+
+INPUT_TEXT: Final = {
+    INPUT_OK: "inputs are valid again",
+    INPUT_INVALID: "an input is not a finite, plausible number: mode FAULT, safe request",
+    OFF_ROUTE: "the vehicle is off the route: function inactive",
+    POSITION_JUMP: "the position jumped: function inactive until it is reactivated",
+}
+
+NO_STORE: Final = (
+    "no profile store: nothing is loaded or saved. Set the parameter profile_store or the "
+    f"environment variable {STORE_VARIABLE} to a folder."
+)
+
+KEPT_BESIDE: Final = (
+    "it is left as it is; the drive goes on with the base profile, and what it teaches is kept in "
+    "a file of its own"
+)
+
+# A printf format, the same in the native FMUs: file, metres, file.
+OLDER_READING: Final = (
+    "%s was probably learned on an older reading of this road (%d of 100 m have the same base "
+    "speed); the drive goes on with the base profile, and that file is left as it is. To carry "
+    "over what was learned: pldf profiles move %s --route ROAD, with the road's file and options"
+)
