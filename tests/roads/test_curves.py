@@ -272,7 +272,7 @@ def test_an_exported_route_is_read_as_it_was_written(tmp_path: Path) -> None:
     np.testing.assert_array_equal(first.curvature_per_m, again.curvature_per_m)
     # Changed by hand, it is judged like any other.
     text = (tmp_path / "out.csv").read_text().splitlines()
-    at = next(i for i, line in enumerate(text) if line.startswith("1505"))
+    at = next(i for i, line in enumerate(text) if line.startswith("1510"))
     text[at:at] = [
         f"{at},{bend},27.78,0"
         for at, bend in ((1500.1, 0), (1500.1, 0.5), (1500.5, 0.5), (1500.5, 0))

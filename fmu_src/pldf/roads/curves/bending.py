@@ -83,6 +83,25 @@ def averaged(knots: FloatArray, spans_m: FloatArray, window_m: float) -> FloatAr
     return bent(knots, wide, metres, curve)
 
 
+def recurved(
+    knots: FloatArray, spans_m: FloatArray, curve: Callable[[FloatArray], FloatArray]
+) -> FloatArray:
+    """Return the knots with another curvature at those in ``spans_m``; none stands elsewhere.
+
+    Args:
+        knots: float64 [6, n]: s, curvature, limit, grade, x, y.
+        spans_m: float64 [m, 2], as from ``spans_of``.
+        curve: gives the new curvature at places in the spans; it does not jump.
+    """
+    inside = _inside(knots[S], spans_m)
+    after = knots.copy()
+    after[CURVATURE, inside] = curve(knots[S, inside])
+    # Where only the curvature jumped there is one knot now.
+    twin = np.zeros(len(inside), dtype=bool)
+    twin[:-1] = inside[:-1] & np.all(after[:, 1:] == after[:, :-1], axis=0)
+    return after[:, ~twin] if np.any(twin) else after
+
+
 def bent(knots: FloatArray, spans_m: FloatArray, corners_m: FloatArray, curve: Curve) -> FloatArray:
     """Return the knots with another curvature inside ``spans_m``.
 

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...kernel.arrays import FloatArray
-from .bending import CURVATURE, S, averaged, bent, turned
+from .bending import CURVATURE, S, averaged, recurved, turned
 from .kinks import LANE_PLAY_M
 
 SWINGS_MIN: Final = 8
@@ -167,20 +167,8 @@ def _denoised(
         sharpest = (_sharpest(part, span), float(np.max(np.abs(value))))
         found.append(Noise(*span, sigma, spacing, sharpest))
     every_m, mean = np.concatenate(middles), np.concatenate(means)
-    return bent(
-        knots, _to_the_ends(knots, spans_m), every_m, lambda s_m, _: np.interp(s_m, every_m, mean)
-    ), found
-
-
-def _to_the_ends(knots: FloatArray, spans_m: list[tuple[float, float]]) -> FloatArray:
-    """Return the spans, beyond the ends of the route where they reach them.
-
-    The outermost knots are inside then: nothing lies behind them that could be kept.
-    """
-    spans = np.array(spans_m)
-    spans[spans[:, 0] <= knots[S, 0], 0] -= 1.0
-    spans[spans[:, 1] >= knots[S, -1], 1] += 1.0
-    return spans
+    after = recurved(knots, np.array(spans_m), lambda s_m: np.interp(s_m, every_m, mean))
+    return after, found
 
 
 def _part(knots: FloatArray, start_m: float, end_m: float) -> FloatArray:
