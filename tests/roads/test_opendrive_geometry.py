@@ -86,7 +86,7 @@ def test_heights_that_no_road_has_are_refused_with_their_place(read: Reader) -> 
         '<elevationProfile><elevation s="0" a="0" b="0" c="0" d="0"/>'
         '<elevation s="60" a="0" b="1.125" c="0" d="0"/></elevationProfile>'
     )
-    message = r"line \d+, road 1, s = 60 m .*grade = 1\.125, steeper than 45 degrees; are heights"
+    message = r"line \d+, road 1, s = 60.0 m.*grade = 1\.125, steeper than 45 degrees; are heights"
     with pytest.raises(ModelError, match=message):
         read(straight("1", inside=inside))
     assert read(straight("1", inside=inside.replace("1.125", "1.0"))).length_m == 100.0
