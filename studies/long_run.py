@@ -100,7 +100,7 @@ def write(summaries: Sequence[Summary], folder: Path) -> None:
     table = folder / "long_run.csv"
     columns = {name: [f"{row[name]:.6g}" for row in summaries] for name in summaries[0]}
     write_table(table, columns)
-    paper.save(figures.long_run(read_long_run(table)), folder / "long_run.png")
+    paper.save(folder / "long_run.png", figures.long_run(read_long_run(table)))
 
 
 if __name__ == "__main__":
