@@ -124,9 +124,12 @@ def bent(knots: FloatArray, spans_m: FloatArray, corners_m: FloatArray, curve: C
     jump &= (at > s_m[0]) & (at < s_m[-1])
     sides[0][LIMIT] = sides[1][LIMIT]  # of a jump's first knot it counts nowhere
     new = np.concatenate((sides[0][:, jump], _ends(sides, at, s_m)), axis=1)
-    kept = knots[:, ~_inside(s_m, ends)]
-    merged = np.concatenate((kept, new), axis=1)
-    return merged[:, np.argsort(merged[S], kind="stable")]
+    first = np.searchsorted(s_m, ends[0, 0], side="left")
+    last = np.searchsorted(s_m, ends[-1, 1], side="right")
+    between = knots[:, first:last]
+    merged = np.concatenate((between[:, ~_inside(between[S], ends)], new), axis=1)
+    merged = merged[:, np.argsort(merged[S], kind="stable")]
+    return np.concatenate((knots[:, :first], merged, knots[:, last:]), axis=1)
 
 
 def _ends(sides: list[FloatArray], at: FloatArray, s_m: FloatArray) -> FloatArray:
