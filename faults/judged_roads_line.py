@@ -162,7 +162,7 @@ def _polynomial(
     p = np.linspace(0.0, end, 20 * len(ds))
     pu, pv = (np.polyval(c[::-1], p) for c in (u, v))
     arc = np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(pu), np.diff(pv)))))
-    if shape.tag == "paramPoly3" and abs(arc[-1] - length_m) > 0.01 * length_m + 0.05:
+    if shape.tag == "paramPoly3" and abs(arc[-1] - length_m) > 0.05 * length_m:
         raise Unclear(f"a curve of {arc[-1]:.6g} m on {length_m:.6g} m")
     at = np.interp(ds * (1.0 if shape.tag == "poly3" else arc[-1] / length_m), arc, p)
     du, dv = (np.polyval(np.polyder(c[::-1]), at) for c in (u, v))

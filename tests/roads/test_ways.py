@@ -466,3 +466,18 @@ def test_a_leg_is_a_road_and_a_direction() -> None:
     assert Leg(road, against=True) == Leg(road, against=False).turned
     assert len({Leg(road, against=True), Leg(road, against=True).turned.turned}) == 1
     assert Leg(road, against=True) not in (road, None)
+
+
+def test_an_end_with_two_links_is_told(tmp_path: Path) -> None:
+    made = (
+        Map().road("1", (0, 0), (50, 0), front="2 start").road("2", (50, 0), (90, 0), rear="1 end")
+    )
+    made.road("3", (50, 0), (70, 0), rear="1 end")
+    text = made.text
+    link = '<successor elementType="road" elementId="2" contactPoint="start"/>'
+    path = tmp_path / "two.xodr"
+    for other, told in ((link, 0), (link.replace('"2"', '"3"'), 1)):
+        path.write_text(text.replace(link, link + other))
+        route = read_route(path, RoadOptions(start_road="1"))
+        notes = [note for note in route.notes if "2 <successor>, which say different" in note.text]
+        assert (route.length_m, len(notes)) == (90.0, told)

@@ -83,8 +83,21 @@ class Network:
     def onward(self, leg: Leg) -> Onward:
         """Return what the leg leads to."""
         if leg not in self._onward:
-            self._onward[leg] = self._read_onward(leg)
+            onward, doubts = self._read_onward(leg), self._other_links(leg)
+            steps = tuple(replace(step, told=step.told + doubts) for step in onward.steps)
+            told = onward.told if steps else onward.told + doubts
+            self._onward[leg] = replace(onward, steps=steps, told=told)
         return self._onward[leg]
+
+    def _other_links(self, leg: Leg) -> tuple[Finding, ...]:
+        """Return what is told of an end with more than one link; the first counts."""
+        links = list(leg.road.all("link", LINK[leg.front]))
+        if all(link.attributes == links[0].attributes for link in links):
+            return ()
+        first = links[0]
+        name = first.attributes.get("elementId", "")
+        text = f"{len(links)} <{first.tag}>, which say different things"
+        return (self.told("warning", leg, first, text, f"the first counts, to {name!r}"),)
 
     def nothing_behind(self, leg: Leg) -> bool:
         """Tell whether no road and no junction of the file is linked to the rear of the leg."""
