@@ -409,6 +409,20 @@ def test_a_main_road_passes_a_virtual_junction_as_it_is(driven: Driven, told: li
     assert "leads into the middle of road m, at 50 m; the way ends here" in told[0]
 
 
+def test_which_end_of_a_ring_a_connecting_road_means_is_told_if_only_the_lines_say_it(
+    driven: Driven, told: list[str]
+) -> None:
+    ring = Map().road(
+        "r", (0.0, 0.0), (100.0, 0.0), rear="junction J", front="junction J", lanes=BOTH
+    )
+    ring.road("c", (100.0, 0.0), (110.0, 0.0), rear="r ", front="e start", junction="J")
+    ring.road("e", (110.0, 0.0), (200.0, 0.0), rear="c end")
+    ring.connect("J", "r", "c")
+    assert driven(ring, start_road="r") == ["r", "c", "e"]
+    assert "does not say (contactPoint) which end of road r it means" in told[0]
+    assert "the end, where the lines meet; c is driven from its start on" in told[0]
+
+
 def test_links_that_contradict_each_other_are_told(driven: Driven, told: list[str]) -> None:
     wrong = Map().road("a", (0.0, 0.0), (100.0, 0.0), front="b end")
     wrong.road("b", (100.0, 0.0), (200.0, 0.0), rear="a end")

@@ -97,14 +97,21 @@ class Meetings:
         ]
         return (self.nearest(entered, near, leg) if near else None), ""
 
-    def misnamed(self, entered: Leg, end: str, leg: Leg) -> str:
+    def misnamed(self, entered: Leg, end: str, leg: Leg, junction: str) -> str:
         """Return what is wrong with the end that a connecting road's own link names, if it is."""
         link = link_at(entered.road, end)
         stated = "" if link is None else link.attributes.get("contactPoint", "").strip().lower()
-        if link is None or self.to_junction(link) or stated not in ENDS or stated == leg.front:
+        if link is None or self.to_junction(link) or stated == leg.front:
             return ""
-        text = f"<{link.tag}> of road {entered.id} (line {link.line}) names the {stated} of road "
-        return text + f"{leg.id}, which is met at its {leg.front}"
+        text = f"<{link.tag}> of road {entered.id} (line {link.line}) "
+        if stated in ENDS:
+            text += f"names the {stated} of road {leg.id}, which is met at its {leg.front}"
+        elif self.is_at(leg, leg.rear, junction):
+            text += f"does not say (contactPoint) which end of road {leg.id} it means, and both"
+            text += f" are at junction {junction}: the {leg.front}, where the lines meet"
+        else:
+            return ""
+        return text
 
     def _begins_at(self, leg: Leg, entered: Leg, end: str, junction: str) -> bool:
         link = link_at(entered.road, end)

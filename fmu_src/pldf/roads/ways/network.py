@@ -233,7 +233,7 @@ class Network:
         has_lane = self.has_lane(way)
         if has_lane is False or (doubt and has_lane is None):
             return None
-        doubts = filter(None, (doubt, self._meetings.misnamed(entered, end, leg)))
+        doubts = filter(None, (doubt, self._meetings.misnamed(entered, end, leg, junction)))
         then = f"{entered.id} is driven from its {end} on"
         return Step(way, tuple(self.told("warning", leg, connection, d, then) for d in doubts))
 
