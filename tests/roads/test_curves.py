@@ -140,6 +140,18 @@ def test_what_is_shorter_than_a_car_is_no_curve(
     assert told.place == "1000 m"
 
 
+@pytest.mark.parametrize("ramp_m", [0.5, 1.0, 2.0, 4.0])
+def test_what_is_repaired_is_never_sharper_than_it_was(ramp_m: float) -> None:
+    """A spike with ramps: its turn is spread over no less than they take."""
+    s = np.array([0.0, 1000.0, 1000.0 + ramp_m, 1002.0 + ramp_m, 1002.0 + 2.0 * ramp_m, 2000.0])
+    knots = knots_of(s, np.array([0.0, 0.0, 0.25, 0.25, 0.0, 0.0]))
+    after, told = judge(knots)
+    assert bool(told) or after is knots
+    assert told or ramp_m > 1.0
+    assert np.max(after[1]) <= 0.25
+    assert turn(after, 900.0, 1100.0) == pytest.approx(turn(knots, 900.0, 1100.0), abs=1e-3)
+
+
 @pytest.mark.parametrize(
     ("radius_m", "length_m"), [(6.0, 8.0), (6.0, 5.5), (30.0, 6.0), (150.0, 60.0)]
 )

@@ -111,10 +111,14 @@ def _spike(spike: Spike, knots: FloatArray) -> tuple[str, Severity]:
     near = slice(*np.searchsorted(knots[S], (spike.start_m, spike.end_m + 1e-9)))
     left = float(np.max(np.abs(knots[CURVATURE, near]), initial=0.0))
     return (
-        f"R {1.0 / spike.curvature_per_m:.3g} m over {length:.2g} m ({angle:.1f} degrees) is no"
+        f"R {1.0 / spike.curvature_per_m:.3g} m over {length:.2g} m ({_degrees(angle)}) is no"
         f" curve of a road; driven as {_driven(left)}",
         "warning",
     )
+
+
+def _degrees(angle_deg: float) -> str:
+    return f"{angle_deg:.1f} degrees" if angle_deg >= 0.1 else "less than 0.1 degrees"
 
 
 def _driven(curvature_per_m: float) -> str:

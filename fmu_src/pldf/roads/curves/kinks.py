@@ -65,8 +65,11 @@ def corners(joints: Joints, felt_per_m: float) -> tuple[Boxes, list[Turn]]:
     return spread(at_m, turn_rad), _turns(at_m, turn_rad, line)
 
 
-def spread(at_m: FloatArray, turn_rad: FloatArray) -> Boxes:
-    """Return the curves, two per corner, that a car drives around corners in order of ``at_m``."""
+def spread(at_m: FloatArray, turn_rad: FloatArray, length_m: FloatArray | float = 0.0) -> Boxes:
+    """Return the curves, two per corner, that a car drives around corners in order of ``at_m``.
+
+    ``length_m`` is over how far they turn already.
+    """
     shortest_m = 0.5 * CAR_LENGTH_M
     free = np.clip(4.0 * LANE_PLAY_M / np.abs(turn_rad), shortest_m, SPREAD_MAX_M)
     half = np.clip(0.5 * np.diff(at_m), shortest_m, SPREAD_MAX_M)
@@ -76,6 +79,7 @@ def spread(at_m: FloatArray, turn_rad: FloatArray) -> Boxes:
     outer = np.maximum(free, inner)
     left = np.append(outer[:1], np.where(bend, half, np.minimum(half, outer[1:])))
     right = np.append(np.where(bend, half, np.minimum(half, outer[:-1])), outer[-1:])
+    left, right = (np.maximum(side, 0.5 * length_m) for side in (left, right))
     return Boxes(
         np.concatenate((at_m - left, at_m)),
         np.concatenate((at_m, at_m + right)),

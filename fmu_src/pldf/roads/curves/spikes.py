@@ -110,7 +110,9 @@ def _width_m(s_m: FloatArray, curvature: FloatArray, first: int, last: int) -> f
 
 def _without(knots: FloatArray, spikes: list[Spike]) -> FloatArray:
     start_m, end_m, turn_rad, _ = np.array(spikes).T
-    boxes = spread(0.5 * (start_m + end_m), np.where(turn_rad == 0.0, 1e-12, turn_rad))
+    boxes = spread(
+        0.5 * (start_m + end_m), np.where(turn_rad == 0.0, 1e-12, turn_rad), end_m - start_m
+    )
     s_m, curvature = knots[S], knots[CURVATURE]
     low_start, low_end = left_values(s_m, curvature, start_m), right_values(s_m, curvature, end_m)
 
