@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...kernel.arrays import FloatArray
 from ..per_metre import along
@@ -54,6 +55,11 @@ def spans_of(start_m: FloatArray, end_m: FloatArray) -> FloatArray:
     new = np.concatenate(([True], first[1:] > reach[:-1]))
     last = np.concatenate((new[1:], [True]))
     return np.stack((first[new], reach[last]), axis=1)
+
+
+def in_a_row(index: NDArray[np.intp]) -> list[NDArray[np.intp]]:
+    """Return rising whole numbers, those that follow each other as one array."""
+    return np.split(index, np.flatnonzero(np.diff(index) > 1) + 1) if len(index) else []
 
 
 def turned(knots: FloatArray, at_m: FloatArray) -> FloatArray:
@@ -152,9 +158,7 @@ def _side(
     return side
 
 
-def _inside(s_m: FloatArray, spans_m: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def _inside(s_m: FloatArray, spans_m: FloatArray) -> NDArray[np.bool_]:
     at = np.searchsorted(spans_m[:, 0], s_m, side="right") - 1
-    inside: np.ndarray[tuple[int], np.dtype[np.bool_]] = (at >= 0) & (
-        s_m <= spans_m[np.maximum(at, 0), 1]
-    )
+    inside: NDArray[np.bool_] = (at >= 0) & (s_m <= spans_m[np.maximum(at, 0), 1])
     return inside

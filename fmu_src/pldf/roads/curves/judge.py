@@ -2,8 +2,7 @@
 
 Three repairs, each made only where something is found: corners of the line are rounded (``kinks``),
 noise is smoothed (``noise``), spikes are rounded like corners (``spikes``). A road on which nothing
-is found keeps its bits. What is repaired comes out so that nothing is found in it a second time, so
-a route that was exported is read as it was written.
+is found keeps its bits.
 """
 
 from __future__ import annotations
@@ -53,13 +52,15 @@ def judged(
     noises = [n for n in noises if not (_rounded(n.start_m, turns) and _rounded(n.end_m, turns))]
     spikes = [spike for spike in spikes if not _rounded(spike.start_m, turns)]
 
-    def finding(at_m: float, text: str, severity: Severity, way_out: str = "") -> Finding:
+    def finding(
+        at_m: float, text: str, severity: Severity = "warning", way_out: str = ""
+    ) -> Finding:
         line, place = locate(at_m)
         return Finding(severity, file, line, place, text, "", way_out)
 
-    told = [finding(turn.first_m, *_turn(turn, knots)) for turn in turns]
+    told = [finding(turn.first_m, _turn(turn, knots)) for turn in turns]
     told += [finding(noise.start_m, *_noise(noise, smoothing_m)) for noise in noises]
-    told += [finding(spike.start_m, *_spike(spike, knots)) for spike in spikes]
+    told += [finding(spike.start_m, _spike(spike, knots)) for spike in spikes]
     return knots, told
 
 
@@ -75,20 +76,17 @@ def _felt_per_m(knots: FloatArray) -> float:
     return _LATERAL_MPS2 / (fastest * fastest)
 
 
-def _turn(turn: Turn, knots: FloatArray) -> tuple[str, Severity]:
+def _turn(turn: Turn, knots: FloatArray) -> str:
     angle = abs(np.degrees(turn.turn_rad))
     near = slice(*np.searchsorted(knots[S], (turn.first_m - 2.0, turn.last_m + 2.0)))
     driven = _driven(float(np.max(np.abs(knots[CURVATURE, near]), initial=0.0)))
     if turn.count == 1:
-        return f"the line turns by {angle:.1f} degrees at a point; driven as {driven}", "warning"
+        return f"the line turns by {angle:.1f} degrees at a point; driven as {driven}"
     length = turn.last_m - turn.first_m
     places = f"the line turns at {turn.count} points over {length:.0f} m"
     if abs(turn.turn_rad) < 0.5 * turn.size_rad:
-        return f"{places}, to and fro; driven as {driven} at the sharpest", "warning"
-    return (
-        f"{places}, by {angle:.0f} degrees in all: a bend drawn as chords? Driven as {driven}",
-        "warning",
-    )
+        return f"{places}, to and fro; driven as {driven} at the sharpest"
+    return f"{places}, by {angle:.0f} degrees in all: a bend drawn as chords? Driven as {driven}"
 
 
 def _noise(noise: Noise, smoothing_m: float | None) -> tuple[str, Severity, str]:
@@ -105,15 +103,14 @@ def _noise(noise: Noise, smoothing_m: float | None) -> tuple[str, Severity, str]
     )
 
 
-def _spike(spike: Spike, knots: FloatArray) -> tuple[str, Severity]:
+def _spike(spike: Spike, knots: FloatArray) -> str:
     length = spike.end_m - spike.start_m
     angle = abs(np.degrees(spike.turn_rad))
     near = slice(*np.searchsorted(knots[S], (spike.start_m, spike.end_m + 1e-9)))
     left = float(np.max(np.abs(knots[CURVATURE, near]), initial=0.0))
     return (
         f"R {1.0 / spike.curvature_per_m:.3g} m over {length:.2g} m ({_degrees(angle)}) is no"
-        f" curve of a road; driven as {_driven(left)}",
-        "warning",
+        f" curve of a road; driven as {_driven(left)}"
     )
 
 

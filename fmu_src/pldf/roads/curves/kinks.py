@@ -39,7 +39,6 @@ class Turn:
         count: how many.
         turn_rad: all together, positive to the left.
         size_rad: the same without signs.
-        line: of the file, where the first stands; 0: not known.
     """
 
     first_m: float
@@ -47,7 +46,6 @@ class Turn:
     count: int
     turn_rad: float
     size_rad: float
-    line: int
 
 
 def corners(joints: Joints, felt_per_m: float) -> tuple[Boxes, list[Turn]]:
@@ -57,12 +55,13 @@ def corners(joints: Joints, felt_per_m: float) -> tuple[Boxes, list[Turn]]:
         joints: where geometries meet, in order.
         felt_per_m: curvature below which nobody feels a curve.
     """
-    at_m, turn_rad, line = (values[np.abs(joints.turn_rad) > TURN_MIN_RAD] for values in joints)
+    turns = np.abs(joints.turn_rad) > TURN_MIN_RAD
+    at_m, turn_rad = joints.s_m[turns], joints.turn_rad[turns]
     # Headings are absolute: what one is rounded by, the next joint takes back; so the sums count.
     boxes = spread(at_m, turn_rad)
     felt = np.abs(boxes.at(at_m, False)) + np.abs(boxes.at(at_m, True)) > 2.0 * felt_per_m
-    at_m, turn_rad, line = at_m[felt], turn_rad[felt], line[felt]
-    return spread(at_m, turn_rad), _turns(at_m, turn_rad, line)
+    at_m, turn_rad = at_m[felt], turn_rad[felt]
+    return spread(at_m, turn_rad), _turns(at_m, turn_rad)
 
 
 def spread(at_m: FloatArray, turn_rad: FloatArray, length_m: FloatArray | float = 0.0) -> Boxes:
@@ -106,7 +105,7 @@ def with_boxes(knots: FloatArray, boxes: Boxes) -> FloatArray:
     return bent(knots, spans_of(boxes.start_m, boxes.end_m), boxes.edges_m, curve)
 
 
-def _turns(at_m: FloatArray, turn_rad: FloatArray, line: FloatArray) -> list[Turn]:
+def _turns(at_m: FloatArray, turn_rad: FloatArray) -> list[Turn]:
     """Return the corners, those less than two spreads apart as one."""
     if len(at_m) == 0:
         return []
@@ -114,6 +113,6 @@ def _turns(at_m: FloatArray, turn_rad: FloatArray, line: FloatArray) -> list[Tur
     ends = np.append(starts[1:], len(at_m)) - 1
     totals = (np.add.reduceat(turns, starts) for turns in (turn_rad, np.abs(turn_rad)))
     return [
-        Turn(float(at_m[i]), float(at_m[j]), int(j - i + 1), float(turn), float(size), int(line[i]))
+        Turn(float(at_m[i]), float(at_m[j]), int(j - i + 1), float(turn), float(size))
         for i, j, turn, size in zip(starts, ends, *totals, strict=True)
     ]

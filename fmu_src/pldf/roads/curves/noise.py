@@ -19,10 +19,9 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...kernel.arrays import FloatArray
-from .bending import CURVATURE, S, averaged, recurved, turned
+from .bending import CURVATURE, S, averaged, in_a_row, recurved, turned
 from .kinks import LANE_PLAY_M
 
 SWINGS_MIN: Final = 8
@@ -86,7 +85,7 @@ def noisy_spans(knots: FloatArray, felt_per_m: float) -> list[tuple[float, float
     # Noise is not all alike: a larger swing among smaller ones belongs to it.
     swings = (sideways < 6.0 * SIDEWAYS_MAX_M) & (length < SWING_MAX_M)
     spans: list[tuple[float, float]] = []
-    for run in _runs(swings):
+    for run in in_a_row(np.flatnonzero(swings)):
         dense = np.convolve(noisy[run], np.ones(_AMONG), mode="full")
         if np.max(dense) < SWINGS_MIN:
             continue
@@ -134,11 +133,6 @@ def _zigzag(values: list[float], swing_min: float) -> list[int]:
         elif abs(value - values[kept[-1]]) >= swing_min:
             kept.append(i)
     return kept
-
-
-def _runs(flags: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
-    index = np.flatnonzero(flags)
-    return np.split(index, np.flatnonzero(np.diff(index) > 1) + 1) if len(index) else []
 
 
 def _denoised(

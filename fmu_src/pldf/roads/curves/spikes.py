@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...kernel.arrays import FloatArray
 from ..per_metre import left_values, right_values, sharpest_curve
-from .bending import CURVATURE, S, bent, spans_of
+from .bending import CURVATURE, S, bent, in_a_row, spans_of
 from .kinks import CAR_LENGTH_M, spread
 
 # A stretch of a car's length may touch one cell more than it has metres.
@@ -38,9 +38,9 @@ def rounded_spikes(knots: FloatArray, felt_per_m: float) -> tuple[FloatArray, li
         felt_per_m: curvature below which nobody feels a curve.
     """
     cells = _suspicious(knots, felt_per_m)
-    if len(cells) == 0:
-        return knots, []
-    spikes = [spike for spike in (_spike(knots, run) for run in _runs(cells)) if spike is not None]
+    spikes = [
+        spike for spike in (_spike(knots, run) for run in in_a_row(cells)) if spike is not None
+    ]
     if not spikes:
         return knots, []
     return _without(knots, spikes), spikes
@@ -70,10 +70,6 @@ def _over_windows(extreme: np.ufunc, values: FloatArray) -> FloatArray:
     for i in range(1, _CELLS):
         extreme(result, values[i : i + count], out=result)
     return result
-
-
-def _runs(cells: NDArray[np.intp]) -> list[NDArray[np.intp]]:
-    return np.split(cells, np.flatnonzero(np.diff(cells) > 1) + 1)
 
 
 def _spike(knots: FloatArray, cells: NDArray[np.intp]) -> Spike | None:
