@@ -98,7 +98,9 @@ def test_every_input_is_fed_by_the_output_of_its_name(fmus: dict[str, Fmu]) -> N
     found = {".".join(target): ".".join(source) for source, target in connections(fmus)}
     assert found == WIRES
     inputs = {f"{part}.{s.name}" for part, fmu in fmus.items() for s in fmu.named("input")}
-    assert inputs - set(found) == {"pldf.vehicle.x_m", "pldf.vehicle.y_m", "pldf.eligible"}
+    asked = {"teach.pause", "teach.forget_here", "teach.undo", "eligible", "limit.override_mps"}
+    outside = {"lead.present", "lead.gap_m", "lead.speed_mps", "vehicle.x_m", "vehicle.y_m"}
+    assert inputs - set(found) == {f"pldf.{name}" for name in asked | outside}
 
 
 def test_ends_that_differ_in_unit_are_not_connected(fmus: dict[str, Fmu]) -> None:

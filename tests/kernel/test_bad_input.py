@@ -27,7 +27,8 @@ ROAD = road(500.0, ((0.0, 25.0),), [(200.0, 260.0, 0.01)])
 
 def test_the_inputs_listed_here_are_all_there_are() -> None:
     real = {s.field for s in SIGNALS if s.causality == "input" and s.kind == "Real"}
-    assert real == {*REAL_INPUTS, "vehicle_x_m", "vehicle_y_m"}
+    of_traffic = {"lead_gap_m", "lead_speed_mps", "limit_override_mps"}
+    assert real == {*REAL_INPUTS, "vehicle_x_m", "vehicle_y_m", *of_traffic}
 
 
 @pytest.mark.parametrize("name", REAL_INPUTS)

@@ -69,6 +69,7 @@ class TraceArrays(NamedTuple):
     set_speed_mps: Floats  # node: manual set speed in force, 0 = none
     start_m: Floats  # intervention k: position at which it began
     end_m: Floats  # intervention k: position at which it ended
+    barred: Floats  # intervention k: 0, or why it must not be learned (OUTCOME in codes)
 
 
 class Work(NamedTuple):

@@ -17,7 +17,8 @@ MODE: Final = Enumeration("Mode", ("OFF", "STANDBY", "ACTIVE", "GAS_OVERRIDE", "
 # What the function may learn from a drive.
 LEARN_OFF: Final = 0
 LEARN_FAITHFUL: Final = 1
-LEARN: Final = Enumeration("Learn", ("OFF", "FAITHFUL"))
+LEARN_CONSISTENT: Final = 2
+LEARN: Final = Enumeration("Learn", ("OFF", "FAITHFUL", "CONSISTENT"))
 
 # Where the position comes from.
 ARC_LENGTH: Final = 0
@@ -42,6 +43,7 @@ REASON_CAP_CURVE: Final = 8
 REASON_CAP_LEGAL: Final = 9
 REASON_STANDBY: Final = 10
 REASON_FAULT: Final = 11
+REASON_FOLLOWING: Final = 12
 REASON: Final = Enumeration(
     "Reason",
     (
@@ -57,8 +59,44 @@ REASON: Final = Enumeration(
         "CAP_LEGAL",
         "STANDBY",
         "FAULT",
+        "FOLLOWING",
     ),
 )
+
+# What just happened, shown for a second.
+EVENT_NONE: Final = 0
+EVENT_LEARNED: Final = 1
+EVENT_FORGOTTEN: Final = 2
+EVENT_NOTHING_TO_FORGET: Final = 3
+EVENT_UNDONE: Final = 4
+EVENT_NOTHING_TO_UNDO: Final = 5
+EVENT_PAUSED: Final = 6
+EVENT_RESUMED: Final = 7
+EVENT_NEW_LIMIT: Final = 8
+EVENT_TAKE_OVER: Final = 9
+EVENT: Final = Enumeration(
+    "Event",
+    (
+        "NONE",
+        "LEARNED",
+        "FORGOTTEN",
+        "NOTHING_TO_FORGET",
+        "UNDONE",
+        "NOTHING_TO_UNDO",
+        "PAUSED",
+        "RESUMED",
+        "NEW_LIMIT",
+        "TAKE_OVER",
+    ),
+)
+
+# How the cluster speaks.
+LANGUAGE_EN: Final = 0
+LANGUAGE_DE: Final = 1
+LANGUAGE: Final = Enumeration("Language", ("EN", "DE"))
+UNIT_KMH: Final = 0
+UNIT_MPH: Final = 1
+UNIT: Final = Enumeration("SpeedUnit", ("KMH", "MPH"))
 
 # Which bound of section 3.8 cut the learned speed of a node last; kept in profile files.
 BOUND_NONE: Final = 0

@@ -12,7 +12,7 @@ from .codes import (
     LEARN_OFF,
     XY,
 )
-from .hmi import reason
+from .hmi import notice_new_limit, reason, show_event
 from .interpolation import place_at, value_at, value_of
 from .lever import (
     CANCEL_CONTACT,
@@ -49,7 +49,7 @@ PEDAL_BOUND = 1e3
 
 def learns(st: PldfState) -> bool:
     """Whether this drive is learned from when it ends."""
-    return st.learn != LEARN_OFF or st.learn_faithful != 0
+    return st.learn != LEARN_OFF or st.learn_faithful != 0 or st.learn_consistent != 0
 
 
 def drive_step(
@@ -72,10 +72,12 @@ def drive_step(
         st.mode = next_mode(st.mode, FAIL)
     update_request(st, route, profile, step_s)
     st.time_ns += int(1e9 * step_s + 0.5)  # whole: a sum of float steps would drift
+    show_event(st)
     st.ahead_m = 0.0
     if st.input_state != INPUT_INVALID:
         st.ahead_m = max(st.vehicle_speed_mps, 0.0) * step_s
     update_outputs(st, route, profile)
+    notice_new_limit(st)
     note_set_speed(st)
 
 
@@ -172,6 +174,8 @@ def update_outputs(st: PldfState, route: RouteArrays, profile: ProfileArrays) ->
         st.rate_set_speed = st.set_speed_ns / st.total_ns
         st.rate_combined = st.combined_ns / st.total_ns
     st.hmi_reason = why
+    st.hmi_reason_code = why
+    st.profile_status_code = st.profile_status
     st.hmi_learned_delta_mps = learned - base
     st.hmi_learning = 1 if learns(st) and st.eligible != 0 else 0
     st.hmi_next_speed_mps = settled

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from .arrays import Floats, ProfileArrays, RouteArrays
 from .codes import (
+    EVENT_NEW_LIMIT,
+    EVENT_NONE,
     FAULT,
     GAS_OVERRIDE,
     OFF,
@@ -26,6 +28,28 @@ from .state import PldfState
 
 PHASE_MPS2 = 0.05  # weaker accelerations of the profile count as cruising
 CAP_MPS = 0.01  # nearer to a hard bound than this: the bound is the reason
+
+
+EVENT_NS = 1_000_000_000  # an event is shown for a second
+
+
+def start_event(st: PldfState, event: int) -> None:
+    """Show ``event`` (EVENT in codes) for a second; a newer one takes its place."""
+    st.hmi_event = event
+    st.event_ns = st.time_ns
+
+
+def show_event(st: PldfState) -> None:
+    """Take down the event whose second is over."""
+    if st.hmi_event != EVENT_NONE and st.time_ns - st.event_ns > EVENT_NS:
+        st.hmi_event = EVENT_NONE
+
+
+def notice_new_limit(st: PldfState) -> None:
+    """Show that the legal limit is another one than at the end of the last step."""
+    if st.noticed_limit_mps > 0.0 and st.limit_mps != st.noticed_limit_mps:
+        start_event(st, EVENT_NEW_LIMIT)
+    st.noticed_limit_mps = st.limit_mps
 
 
 def find_turns(speed: Floats, turn_m: Floats) -> None:

@@ -9,11 +9,15 @@ from dataclasses import dataclass
 
 from .codes import (
     ARC_LENGTH,
+    LANGUAGE,
+    LANGUAGE_EN,
     LEARN,
     LEARN_OFF,
     LOCALIZATION,
     STRETCH,
     STRETCH_RECORDED,
+    UNIT,
+    UNIT_KMH,
 )
 from .signals import choice_parameter, count_parameter, flag_parameter, real_parameter, since
 from .units import MPS_PER_KMH
@@ -33,6 +37,14 @@ class GeneralParameters:
     learn: int = choice_parameter("What is learned when the drive ends", LEARN, start=LEARN_OFF)
     learn_faithful: int = flag_parameter(
         "Learn as with learn = FAITHFUL, for importers that cannot set enumerations", start=False
+    )
+    learn_consistent: int = since(
+        "0.3",
+        flag_parameter(
+            "Learn as with learn = CONSISTENT, for importers that cannot set enumerations; before "
+            "learn_faithful",
+            start=False,
+        ),
     )
     localization: int = choice_parameter(
         "Position from vehicle.s_m or from vehicle.x_m and vehicle.y_m",
@@ -227,3 +239,54 @@ class LearningParameters:
             "s", start=5.0, low=0.0, high=60.0,
         ),
     )  # fmt: skip
+    learning_evidence_gain: float = since(
+        "0.3",
+        real_parameter(
+            "CONSISTENT: evidence by a pass with an intervention",
+            "",
+            start=1.25,
+            low=0.0,
+            high=10.0,
+        ),
+    )
+    learning_evidence_loss: float = since(
+        "0.3",
+        real_parameter(
+            "CONSISTENT: evidence lost by a pass without", "", start=0.98, low=0.0, high=10.0
+        ),
+    )
+    learning_evidence_accept: float = since(
+        "0.3",
+        real_parameter(
+            "CONSISTENT: evidence from which an intervention is learned",
+            "", start=2.2, low=0.0, high=2.2,
+        ),
+    )  # fmt: skip
+
+
+@dataclass
+class FollowingParameters:
+    """Another car ahead, section 8."""
+
+    following_desired_time_gap_s: float = since(
+        "0.3",
+        real_parameter("Time gap kept behind a lead car", "s", start=1.8, low=0.8, high=3.0),
+    )
+    following_standstill_gap_m: float = since(
+        "0.3",
+        real_parameter(
+            "Gap kept behind a lead car that stands", "m", start=3.0, low=1.0, high=20.0
+        ),
+    )
+
+
+@dataclass
+class ClusterParameters:
+    """How the instrument cluster speaks."""
+
+    hmi_language: int = since(
+        "0.3", choice_parameter("Language of hmi.text", LANGUAGE, start=LANGUAGE_EN)
+    )
+    hmi_unit: int = since(
+        "0.3", choice_parameter("Unit of speeds in hmi.text", UNIT, start=UNIT_KMH)
+    )

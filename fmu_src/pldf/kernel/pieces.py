@@ -55,13 +55,16 @@ def _insert_piece(st: PldfState, trace: TraceArrays, work: Work, k: int, alpha: 
         # Slower than the slowest wish that is learned no piece becomes by being lifted (decision).
         work.a[i] = max(_stretched_speed(trace, start, k, d), st.learning_speed_min_mps)
         slowest = min(slowest, trace.speed_mps[i])
-        if hole or trace.eligible[cell_at(len(work.a), d)] <= 0.0:
+        barred = trace.barred[k] > 0.0 or trace.eligible[cell_at(len(work.a), d)] <= 0.0
+        if hole or barred:
             work.b[i] = NOT_LEARNED
         elif work.b[i] != NOT_LEARNED:
             work.b[i] = k + 1.0
             outcome = OUTCOME_NOT_MOVED
     if hole:
         return OUTCOME_HOLE
+    if trace.barred[k] > 0.0:
+        return int(trace.barred[k])
     return OUTCOME_STOP if slowest < st.learning_speed_min_mps else outcome
 
 

@@ -32,6 +32,11 @@ def record_sample(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None
     st.previous_set_mps = st.shown_set_mps
 
 
+def may_learn(st: PldfState) -> bool:
+    """Tell whether what the driver does now may be learned, for all that learning reads of it."""
+    return st.eligible != 0
+
+
 def note_set_speed(st: PldfState) -> None:
     """Remember the manual set speed that the outputs show, 0 = none, for the next sample.
 
@@ -155,7 +160,7 @@ def _write_nodes(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None:
         speed = st.from_speed_mps + part * (st.knot_speed_mps - st.from_speed_mps)
         trace.speed_mps[i] = speed
         trace.time_s[i] = st.from_time_s + part * (st.knot_time_s - st.from_time_s)
-        trace.eligible[i] = 1.0 if st.eligible != 0 else 0.0
+        trace.eligible[i] = 1.0 if may_learn(st) else 0.0
         trace.gap[i] = 1.0 if hole else 0.0
         trace.set_speed_mps[i] = _set_speed_for(st, route, i)
 

@@ -30,8 +30,8 @@ Causality = Literal["parameter", "input", "output", "local"]
 Kind = Literal["Real", "Integer", "Boolean", "Enumeration", "String"]
 
 GROUPS: Final = (
-    "vehicle", "driver", "lever", "rate", "drive", "profile", "hmi",
-    "planner", "control", "learning", "wish", "script", "body",
+    "vehicle", "driver", "lever", "teach", "lead", "rate", "drive", "profile", "hmi",
+    "planner", "control", "learning", "following", "wish", "script", "body",
 )  # fmt: skip
 
 _KEY: Final = "signal"

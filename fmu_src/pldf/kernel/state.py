@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .codes import INPUT_STATE, MODE, PROFILE_STATUS, REASON
+from .codes import EVENT, INPUT_STATE, MODE, PROFILE_STATUS, REASON
 from .parameters import (
+    ClusterParameters,
     ControlParameters,
+    FollowingParameters,
     GeneralParameters,
     LearningParameters,
     PlannerParameters,
@@ -33,6 +35,7 @@ from .signals import (
     flag_output,
     real_input,
     real_output,
+    since,
 )
 
 COUNT_MAX = 999_999_999
@@ -64,6 +67,32 @@ class Inputs:
     lever_up_long: int = flag_input("Lever: set speed up, long tip", start=False)
     lever_down_long: int = flag_input("Lever: set speed down, long tip", start=False)
     eligible: int = flag_input("Learning is allowed here (free driving)", start=True)
+    teach_pause: int = since(
+        "0.3", flag_input("While true, nothing of this drive is learned", start=False)
+    )
+    teach_forget_here: int = since(
+        "0.3", flag_input("At its rising edge, what was learned here is forgotten", start=False)
+    )
+    teach_undo: int = since(
+        "0.3", flag_input("At its rising edge, the newest lesson is taken back", start=False)
+    )
+    lead_present: int = since(
+        "0.3", flag_input("A car drives ahead; else the other two are ignored", start=False)
+    )
+    lead_gap_m: float = since(
+        "0.3",
+        real_input("Gap to the car ahead, bumper to bumper", "m", start=0.0, low=-1e3, high=1e4),
+    )
+    lead_speed_mps: float = since(
+        "0.3", real_input("Speed of the car ahead", "m/s", start=0.0, low=-50.0, high=150.0)
+    )
+    limit_override_mps: float = since(
+        "0.3",
+        real_input(
+            "Temporary limit from the scenario, 0 = none; counts where it is the lower one",
+            "m/s", start=0.0, low=0.0, high=150.0, name="limit.override_mps",
+        ),
+    )  # fmt: skip
 
 
 @dataclass
@@ -105,6 +134,40 @@ class Outputs:
     hmi_next_speed_mps: float = real_output("Next speed that the profile settles at", "m/s")
     hmi_next_distance_m: float = real_output("Distance to that speed", "m")
     hmi_learning: int = flag_output("This drive is being learned from")
+    hmi_reason_code: int = since(
+        "0.3", holds(code(REASON), count_output(f"hmi.reason as a number: {REASON.legend}"))
+    )
+    profile_status_code: int = since(
+        "0.3",
+        holds(
+            code(PROFILE_STATUS),
+            count_output(f"profile.status as a number: {PROFILE_STATUS.legend}", held=True),
+        ),
+    )
+    hmi_learned_in_drives: int = since(
+        "0.3", holds(whole(0, COUNT_MAX), count_output("How many drives shaped this place"))
+    )
+    hmi_confidence: float = since(
+        "0.3",
+        real_output("How sure the function is of what it learned here", "", low=0.0, high=1.0),
+    )
+    hmi_event: int = since(
+        "0.3",
+        holds(
+            code(EVENT),
+            count_output(f"What just happened, for a second: {EVENT.legend}", held=True),
+        ),
+    )
+    hmi_take_over: int = since(
+        "0.3", flag_output("The driver has to brake: following alone may not do", held=True)
+    )
+    following_limits: int = since(
+        "0.3", flag_output("The car ahead, not the profile, sets the speed", held=True)
+    )
+    following_time_gap_s: float = since(
+        "0.3",
+        real_output("Time gap to the car ahead, 0 = none", "s", low=0.0, high=1e3, held=True),
+    )
 
 
 @dataclass
@@ -149,6 +212,8 @@ class Memory:
     gap_uncovered_ns: int = nanoseconds()
     set_series: int = whole(0, COUNT_MAX, at_most=NODES)  # of presses of the lever, once learned
     holds: int = whole(0, COUNT_MAX, at_most=NODES)  # runs of nodes that a bound cut, once learned
+    noticed_limit_mps: float = 0.0  # the legal limit at the end of the last step
+    event_ns: int = nanoseconds(at_most="time_ns")  # when the event shown began
     total_ns: int = nanoseconds()
     pedal_ns: int = nanoseconds(at_most="total_ns")
     set_speed_ns: int = nanoseconds(at_most="total_ns")
@@ -162,6 +227,8 @@ class PldfState(
     Memory,
     Outputs,
     Inputs,
+    ClusterParameters,
+    FollowingParameters,
     LearningParameters,
     ControlParameters,
     PlannerParameters,

@@ -246,7 +246,8 @@ def _learning(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]
     yield "bounds", "bounds"
     yield "bound_count", str(len(model.bounds))
     yield "store_text", str(texts.index("profile_store"))
-    yield "learn_if", f"{{{cells.index('learn')}, {cells.index('learn_faithful')}}}"
+    asked = (cells.index(name) for name in ("learn", "learn_faithful", "learn_consistent"))
+    yield "learn_if", f"{{{', '.join(map(str, asked))}}}"
     for name, field in _LEARNING_CELLS.items():
         yield name, str(cells.index(field))
     yield "base_column", str(model.first(ProfileArrays, "base_mps"))

@@ -20,7 +20,9 @@ bool learning_allows(const Importer *importer, const State *state) {
 
 static bool learns(const State *state) {
     const Learning *l = model.learning;
-    return state->record[l->learn_if[0]].integer || state->record[l->learn_if[1]].integer;
+    for (int i = 0; i < 3; i++)
+        if (state->record[l->learn_if[i]].integer) return true;
+    return false;
 }
 
 /* Whether it matters to this drive what is there. */
