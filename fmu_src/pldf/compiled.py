@@ -27,6 +27,7 @@ from .kernel import (
     bounds,
     codes,
     drive,
+    evidence,
     hmi,
     interpolation,
     jerk,
@@ -76,6 +77,7 @@ KERNEL_MODULES: tuple[ModuleType, ...] = (
     pieces,
     segments,
     outcomes,
+    evidence,
     learning,
 )
 

@@ -15,7 +15,7 @@ from typing import Annotated, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .ranges import NODE
+from .ranges import COUNT, EVIDENCE, NODE
 
 # Outside the kernels: a vector of one value per row, metre or person.
 FloatArray = NDArray[np.float64]
@@ -53,6 +53,18 @@ class ProfileArrays(NamedTuple):
     intervention: Floats  # node: number of the intervention in that drive, 0 = set speed
     lessons: Floats  # node: how many drives shaped it
     bound: Floats  # node: which bound cut it last (BOUND in codes)
+    evidence_faster: Annotated[Floats, EVIDENCE]  # node: for going faster (section 6)
+    evidence_slower: Annotated[Floats, EVIDENCE]  # node
+    pending_faster: Annotated[Floats, COUNT]  # node: how many demonstrations wait for more evidence
+    pending_slower: Annotated[Floats, COUNT]  # node
+    pending_faster_mps: Floats  # node: their mean speed
+    pending_slower_mps: Floats  # node
+    offset_evidence_faster: Annotated[Floats, EVIDENCE]  # cell: the same by the lever
+    offset_evidence_slower: Annotated[Floats, EVIDENCE]  # cell
+    offset_pending_faster: Annotated[Floats, COUNT]  # cell
+    offset_pending_slower: Annotated[Floats, COUNT]  # cell
+    offset_pending_faster_mps: Floats  # cell: their mean offset from the legal limit
+    offset_pending_slower_mps: Floats  # cell
     limit_end_m: Floats  # node: position of the next change of the legal limit, else route end
     turn_m: Annotated[Floats, NODE]  # node: where the present or next acceleration phase ends
     braking_mps: Floats  # node: highest speed from which braking keeps the hard caps
@@ -98,6 +110,18 @@ class NextArrays(NamedTuple):
     intervention: Floats
     lessons: Floats
     bound: Floats
+    evidence_faster: Floats
+    evidence_slower: Floats
+    pending_faster: Floats
+    pending_slower: Floats
+    pending_faster_mps: Floats
+    pending_slower_mps: Floats
+    offset_evidence_faster: Floats
+    offset_evidence_slower: Floats
+    offset_pending_faster: Floats
+    offset_pending_slower: Floats
+    offset_pending_faster_mps: Floats
+    offset_pending_slower_mps: Floats
     outcome: Floats  # pedal intervention k: what became of it (OUTCOME in codes)
     set_from_m: Floats  # series k of presses: where its offset begins to hold
     set_to_m: Floats  # series k: where it ends

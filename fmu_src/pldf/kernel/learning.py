@@ -8,6 +8,7 @@ from __future__ import annotations
 from .arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from .bounds import hard_cap, keep_bounds
 from .codes import BOUND_NONE, OUTCOME_LEARNED
+from .evidence import keep_evidence
 from .lowering import UNMARKED
 from .offsets import adopt_offsets
 from .outcomes import tell_outcomes
@@ -33,6 +34,7 @@ def learn_drive(
     b = marks, c = profile before the pedals' lessons, d = their mean, all else scratch.
     """
     copy_profile(profile, following)
+    keep_evidence(profile, following)
     if st.nodes < 2:
         return
     drive = st.profile_iteration + 1.0

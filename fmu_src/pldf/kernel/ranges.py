@@ -25,6 +25,9 @@ VALUE_MAX: Final = 1e9
 # 36 years; sums and differences of a few such times fit into 64 bits.
 TIME_MAX_NS: Final = 1 << 60
 
+# Of one metre (section 6), in a profile file, too: other scales are other gains and losses.
+EVIDENCE_MAX: Final = 2.2
+
 # In place of the name of a field: how many nodes the route has, and the number of the last one.
 NODES: Final = "NODES"
 LAST_NODE: Final = "LAST_NODE"
@@ -50,6 +53,8 @@ class Range:
 
 
 NODE: Final = Range(0, VALUE_MAX, LAST_NODE)
+COUNT: Final = Range(0, VALUE_MAX)
+EVIDENCE: Final = Range(0, EVIDENCE_MAX)
 
 
 def whole(low: int, high: int, *, start: int = 0, at_most: str = "", plus: str = "") -> Any:

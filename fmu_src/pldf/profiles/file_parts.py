@@ -10,13 +10,13 @@ import numpy as np
 
 from ..kernel.arrays import FloatArray
 from ..kernel.codes import BOUND
+from ..kernel.ranges import EVIDENCE_MAX
 from .stored_profile import COLUMN_NAMES, ProfileRefused
 
 ALIGNMENT: Final = 64
 NODES_MAX: Final = 10_000_000
 SPEED_MAX_MPS: Final = 200.0
 COUNT_MAX: Final = 999_999_999
-EVIDENCE_MAX: Final = 2.2
 FILE_MAX: Final = 1 << 32
 CHECKSUM_SIZE: Final = len(b"crc32 00000000\n")
 MAGIC: Final = b"PLDF-PROFILE "
