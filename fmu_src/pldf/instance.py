@@ -16,7 +16,7 @@ from . import snapshot
 from .errors import ModelError
 from .findings import Finding
 from .kernel.arrays import FloatArray, Floats
-from .kernel.signals import signals_of
+from .kernel.signals import Signal, signals_of
 
 Arrays = tuple[FloatArray, ...]
 Level = Literal["info", "warning", "error"]
@@ -79,12 +79,8 @@ class Instance(Generic[RecordT]):
     def check_parameters(self) -> None:
         """Raise ModelError for the first numeric parameter outside its declared range."""
         for signal in signals_of(self.record):
-            value = getattr(self.record, signal.field)
-            low, high = signal.range
-            if signal.causality == "parameter" and not low <= value <= high:
-                raise ModelError(
-                    f"parameter {signal.name} = {value}: it must lie between {low:g} and {high:g}"
-                )
+            if signal.causality == "parameter":
+                require_in_range(signal, getattr(self.record, signal.field))
 
     def clear_memory(self) -> None:
         """Set everything but parameters and inputs to its start value."""
@@ -113,6 +109,15 @@ class Instance(Generic[RecordT]):
         for name, text in found.texts.items():
             setattr(self.texts, name, text)
         self.attach(found.arrays)
+
+
+def require_in_range(parameter: Signal, value: float) -> None:
+    """Raise ModelError if ``value`` is outside the parameter's declared range, or NaN."""
+    low, high = parameter.range
+    if not low <= value <= high:
+        raise ModelError(
+            f"parameter {parameter.name} = {value}: it must lie between {low:g} and {high:g}"
+        )
 
 
 def view(array: FloatArray) -> Floats:

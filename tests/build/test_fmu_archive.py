@@ -90,7 +90,11 @@ def test_start_initial_and_variability(xml):
         wanted = {"input": None, "parameter": "exact", "output": "calculated"}
         assert variable.get("initial") == wanted[causality]
         expected = "continuous" if kind.tag == "Real" else "discrete"
-        assert variable.get("variability") == ("fixed" if causality == "parameter" else expected)
+        if causality == "parameter":
+            name = str(variable.get("name"))
+            tunable = name.startswith(("following.", "hmi.", "control.tip_"))
+            expected = "tunable" if tunable else "fixed"
+        assert variable.get("variability") == expected
         start = float(kind.get("start", "nan").replace("true", "1").replace("false", "0") or 0)
         if causality != "output" and kind.tag in ("Real", "Integer"):
             assert float(kind.get("min", "-inf")) <= start <= float(kind.get("max", "inf"))

@@ -147,8 +147,8 @@ def test_a_later_release_moves_no_value_reference():
 
 def test_access_knows_what_may_be_set():
     access = Access(SIGNALS, frozenset({"Real"}))
-    assert access.writable([0, 2]).parameters
-    assert not access.writable([2]).parameters
+    assert access.writable([0, 2]).fixed
+    assert not access.writable([2]).fixed
     with pytest.raises(ModelError, match="out is an output"):
         access.writable([2, 4])
 

@@ -22,7 +22,8 @@ class Group(NamedTuple):
     fields: tuple[str, ...]
     read: Callable[[Any], list[Any]]
     outputs: bool  # contains an output
-    parameters: bool  # contains a parameter
+    fixed: bool  # contains a parameter that only the initialization takes
+    tunable: tuple[tuple[int, Signal], ...]  # the other parameters, with their places in the group
 
 
 class Access:
@@ -74,7 +75,8 @@ def _group(signals: Sequence[Signal]) -> Group:
         fields=names,
         read=_reader(names),
         outputs=any(s.causality == "output" for s in signals),
-        parameters=any(s.causality == "parameter" for s in signals),
+        fixed=any(s.causality == "parameter" and not s.tunable for s in signals),
+        tunable=tuple((at, s) for at, s in enumerate(signals) if s.tunable),
     )
 
 

@@ -160,7 +160,7 @@ def attributes(signal: Signal, reference: int) -> dict[str, str]:
 
 def _variability(signal: Signal) -> str:
     if signal.causality == "parameter":
-        return "fixed"
+        return "tunable" if signal.tunable else "fixed"
     return "continuous" if signal.kind == "Real" else "discrete"
 
 

@@ -14,7 +14,7 @@ from math import inf, isfinite
 from typing import Any, Final
 
 from ..errors import ModelError
-from ..instance import Instance
+from ..instance import Instance, require_in_range
 from ..kernel.signals import Signal, variables_of
 from .access import Group
 from .phases import Phase, next_phase
@@ -165,7 +165,7 @@ class Session:
         return asdict(ours.texts) == asdict(other.texts) and all(
             getattr(ours.record, s.field) == getattr(other.record, s.field)
             for s in self.signals
-            if s.causality == "parameter" and s.kind != "String"
+            if s.causality == "parameter" and s.kind != "String" and not s.tunable
         )
 
     def _refresh(self) -> None:
@@ -177,12 +177,14 @@ class Session:
             self._stale = False
 
     def _write(self, group: Group, values: list[Any], record: Any) -> None:
-        rule = "setting a fixed parameter" if group.parameters else "setting a variable"
+        rule = "setting a fixed parameter" if group.fixed else "setting a variable"
         next_phase(self.phase, rule)
+        for at, parameter in group.tunable:
+            require_in_range(parameter, values[at])
         for name, value in zip(group.fields, values, strict=True):
             setattr(record, name, value)
         self._stale = True
-        if group.parameters:
+        if group.fixed:
             self._ready = self._prepared = False
 
 

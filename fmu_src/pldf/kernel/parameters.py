@@ -19,7 +19,14 @@ from .codes import (
     UNIT,
     UNIT_KMH,
 )
-from .signals import choice_parameter, count_parameter, flag_parameter, real_parameter, since
+from .signals import (
+    choice_parameter,
+    count_parameter,
+    flag_parameter,
+    real_parameter,
+    since,
+    tunable,
+)
 from .units import MPS_PER_KMH
 
 
@@ -103,11 +110,15 @@ class ControlParameters:
     control_pedal_threshold: float = real_parameter(
         "Pedal travel from which a pedal counts as pressed", "", start=0.02, low=0.0, high=0.5
     )
-    control_tip_short_mps: float = real_parameter(
-        "Set-speed change by a short tip", "m/s", start=MPS_PER_KMH, low=0.0, high=20.0
+    control_tip_short_mps: float = tunable(
+        real_parameter(
+            "Set-speed change by a short tip", "m/s", start=MPS_PER_KMH, low=0.0, high=20.0
+        )
     )
-    control_tip_long_mps: float = real_parameter(
-        "Set-speed change by a long tip", "m/s", start=5.0 * MPS_PER_KMH, low=0.0, high=20.0
+    control_tip_long_mps: float = tunable(
+        real_parameter(
+            "Set-speed change by a long tip", "m/s", start=5.0 * MPS_PER_KMH, low=0.0, high=20.0
+        )
     )
     control_set_speed_min_mps: float = real_parameter(
         "Lowest manual set speed", "m/s", start=20.0 * MPS_PER_KMH, low=1.0, high=100.0
@@ -270,12 +281,16 @@ class FollowingParameters:
 
     following_desired_time_gap_s: float = since(
         "0.3",
-        real_parameter("Time gap kept behind a lead car", "s", start=1.8, low=0.8, high=3.0),
+        tunable(
+            real_parameter("Time gap kept behind a lead car", "s", start=1.8, low=0.8, high=3.0)
+        ),
     )
     following_standstill_gap_m: float = since(
         "0.3",
-        real_parameter(
-            "Gap kept behind a lead car that stands", "m", start=3.0, low=1.0, high=20.0
+        tunable(
+            real_parameter(
+                "Gap kept behind a lead car that stands", "m", start=3.0, low=1.0, high=20.0
+            )
         ),
     )
 
@@ -285,8 +300,8 @@ class ClusterParameters:
     """How the instrument cluster speaks."""
 
     hmi_language: int = since(
-        "0.3", choice_parameter("Language of hmi.text", LANGUAGE, start=LANGUAGE_EN)
+        "0.3", tunable(choice_parameter("Language of hmi.text", LANGUAGE, start=LANGUAGE_EN))
     )
     hmi_unit: int = since(
-        "0.3", choice_parameter("Unit of speeds in hmi.text", UNIT, start=UNIT_KMH)
+        "0.3", tunable(choice_parameter("Unit of speeds in hmi.text", UNIT, start=UNIT_KMH))
     )

@@ -109,8 +109,8 @@ def _range(spec: Field[Any], signal: Signal | None) -> Range | None:
         return declared
     if signal is not None and signal.kind == "Boolean":
         return Range(0, 1)
-    if signal is not None and signal.causality in ("parameter", "input"):
-        return None
+    if signal is not None and signal.causality in ("parameter", "input") and not signal.tunable:
+        return None  # a fixed parameter is checked when a drive starts
     low, high = signal.range if signal is not None else (-inf, inf)
     if isinstance(spec.default, int) and high == inf:
         raise ValueError(f"{spec.name}: an integer of the memory has to declare its range")

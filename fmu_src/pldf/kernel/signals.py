@@ -60,6 +60,7 @@ class Signal:
 
     ``held``: an output that initialization and steps set, and that does not follow the inputs in
     between. Masters that sort by such dependencies find no algebraic loop in the coupled models.
+    ``tunable``: a parameter that may be set between steps, too.
     ``since``: the release that brought it; empty: 0.2 had it.
     """
 
@@ -74,6 +75,7 @@ class Signal:
     high: float | None = None
     enumeration: Enumeration | None = None
     held: bool = False
+    tunable: bool = False
     since: str = ""
 
     @property
@@ -220,7 +222,19 @@ def text_parameter(description: str, *, name: str = "") -> Any:
     return _spec("parameter", "String", "", description, name=name)
 
 
+def tunable(specifier: Any) -> Any:
+    """Say that the parameter may be set between steps, too, and counts from the next one on.
+
+    Nothing that is prepared once per drive (profiles, what a file is read with) may depend on it.
+    """
+    return _with(specifier, tunable=True)
+
+
 def since(release: str, specifier: Any) -> Any:
     """Say that ``release`` brought the variable that one of the functions above specifies."""
-    details = {**specifier.metadata[_KEY], "since": release}
+    return _with(specifier, since=release)
+
+
+def _with(specifier: Any, **more: object) -> Any:
+    details = {**specifier.metadata[_KEY], **more}
     return field(default=specifier.default, metadata={**specifier.metadata, _KEY: details})

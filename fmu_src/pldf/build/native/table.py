@@ -190,7 +190,7 @@ def _variables(model: NativeModel) -> list[Iterable[str]]:
     """Return one row per value reference; ``time``, which only FMI 3.0 asks for, is among them."""
     known = signals(model)
     rows: list[Iterable[str]] = [_variable(signal, model) for signal in known]
-    time = ('"time"', "KIND_TIME", "INDEPENDENT", "0", _number(-inf), _number(inf))
+    time = ('"time"', "KIND_TIME", "INDEPENDENT", "0", "0", _number(-inf), _number(inf))
     rows.insert(time_reference(known), time)
     return rows
 
@@ -200,6 +200,7 @@ def _variable(signal: Signal, model: NativeModel) -> Iterator[str]:
     yield _text(signal.name)
     yield _KINDS[signal.kind]
     yield signal.causality.upper()
+    yield str(int(signal.tunable))
     yield str([f.name for f in fields(record)].index(signal.field))
     low, high = signal.range
     yield _number(low)

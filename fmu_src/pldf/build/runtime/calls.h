@@ -47,10 +47,13 @@ FMI(Status) FMI(DeSerializeFMUstate)(void *c, const FMI(Byte) bytes[], size_t si
         return answer(good);                                                           \
     }
 
-#define SET(TYPE, KINDS, WRITE)                                                        \
+#define SET(TYPE, KINDS, NUMBER, WRITE)                                                \
     FMI(Status) FMI(Set##TYPE)(VALUES(const FMI(TYPE))) {                              \
         Session *s = c;                                                                \
         bool good = session_can_set(s, references, count, values, VALUE_COUNT, KINDS); \
+        for (size_t i = 0; good && i < count; i++)                                     \
+            if (model.variables[references[i]].tunable)                                \
+                good = session_allows_value(s, references[i], NUMBER);                 \
         for (size_t i = 0; good && i < count; i++) WRITE;                              \
         return answer(good);                                                           \
     }

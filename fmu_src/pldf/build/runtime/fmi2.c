@@ -54,10 +54,10 @@ GET(Real, KIND_REAL, CELL(i).real)
 GET(Integer, KIND_INTEGER | KIND_ENUMERATION, (fmi2Integer)CELL(i).integer)
 GET(Boolean, KIND_BOOLEAN, (fmi2Boolean)CELL(i).integer)
 GET(String, KIND_STRING, TEXT(i))
-SET(Real, KIND_REAL, CELL(i).real = values[i])
-SET(Integer, KIND_INTEGER | KIND_ENUMERATION, CELL(i).integer = values[i])
-SET(Boolean, KIND_BOOLEAN, CELL(i).integer = values[i] != fmi2False)
-SET(String, KIND_STRING, good = session_set_text(s, references[i], values[i]))
+SET(Real, KIND_REAL, values[i], CELL(i).real = values[i])
+SET(Integer, KIND_INTEGER | KIND_ENUMERATION, values[i], CELL(i).integer = values[i])
+SET(Boolean, KIND_BOOLEAN, values[i] != fmi2False, CELL(i).integer = values[i] != fmi2False)
+SET(String, KIND_STRING, 0.0, good = session_set_text(s, references[i], values[i]))
 
 /* The status of the last step, none of which is ever pending */
 

@@ -89,11 +89,11 @@ GET(Int32, KIND_INTEGER, (fmi3Int32)CELL(i).integer)
 GET(Int64, KIND_ENUMERATION, CELL(i).integer)
 GET(Boolean, KIND_BOOLEAN, CELL(i).integer != 0)
 GET(String, KIND_STRING, TEXT(i))
-SET(Float64, KIND_REAL, CELL(i).real = values[i])
-SET(Int32, KIND_INTEGER, CELL(i).integer = values[i])
-SET(Int64, KIND_ENUMERATION, CELL(i).integer = values[i])
-SET(Boolean, KIND_BOOLEAN, CELL(i).integer = values[i])
-SET(String, KIND_STRING, good = session_set_text(s, references[i], values[i]))
+SET(Float64, KIND_REAL, values[i], CELL(i).real = values[i])
+SET(Int32, KIND_INTEGER, values[i], CELL(i).integer = values[i])
+SET(Int64, KIND_ENUMERATION, (double)values[i], CELL(i).integer = values[i])
+SET(Boolean, KIND_BOOLEAN, values[i], CELL(i).integer = values[i])
+SET(String, KIND_STRING, 0.0, good = session_set_text(s, references[i], values[i]))
 
 /* What the capability flags say is not there, other types, model exchange, scheduled execution */
 

@@ -17,11 +17,12 @@ typedef void Entry(Cell *, double *, int64_t, int64_t, double);
 
 enum { KIND_REAL = 1, KIND_INTEGER = 2, KIND_BOOLEAN = 4, KIND_STRING = 8, KIND_ENUMERATION = 16 };
 enum { KIND_TIME = 32 }; /* what FMI 3.0 alone has; in no cell */
-enum { PARAMETER, INPUT, OUTPUT, INDEPENDENT }; /* parameters are fixed */
+enum { PARAMETER, INPUT, OUTPUT, INDEPENDENT };
 
 typedef struct { /* its index is the value reference */
     const char *name;
     int32_t kind, causality;
+    bool tunable; /* a parameter that may be set between steps, too */
     int32_t cell; /* index in the record, of a String in the texts */
     double low, high;
 } Variable;

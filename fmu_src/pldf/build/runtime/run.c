@@ -19,15 +19,17 @@ void run_call(Entry *entry, State *state, Run *run, double step_s) {
 
 /* Parameters */
 
+bool run_allows(const Importer *importer, const Variable *v, double value) {
+    return (value >= v->low && value <= v->high) ||
+           importer_tell(importer, ERROR_LEVEL, "parameter %s = %.17g: it must lie between %g and %g",
+                         v->name, value, v->low, v->high);
+}
+
 static bool check_parameters(const Importer *importer, const Cell *record) {
     for (const Variable *v = model.variables; v < model.variables + model.variable_count; v++) {
         if (v->causality != PARAMETER || v->kind == KIND_STRING) continue;
         Cell cell = record[v->cell];
-        double value = v->kind == KIND_REAL ? cell.real : (double)cell.integer;
-        if (!(value >= v->low && value <= v->high))
-            return importer_tell(importer, ERROR_LEVEL,
-                                 "parameter %s = %.17g: it must lie between %g and %g", v->name, value,
-                                 v->low, v->high);
+        if (!run_allows(importer, v, v->kind == KIND_REAL ? cell.real : (double)cell.integer)) return false;
     }
     return true;
 }

@@ -24,6 +24,7 @@ typedef struct { /* what follows from the parameters */
 /* Makes the run that follows from a state's parameters, and the rest of that state. */
 bool run_make(const Importer *importer, State *state, Run *run);
 void run_call(Entry *entry, State *state, Run *run, double step_s); /* if the model has it */
+bool run_allows(const Importer *importer, const Variable *parameter, double value); /* its range */
 void run_release(Run *run);
 
 /* Of models that learn (learning.c); the others allow everything, follow and keep nothing. */

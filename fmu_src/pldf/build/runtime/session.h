@@ -38,6 +38,8 @@ bool session_can_get(Session *s, const uint32_t *references, size_t count, const
                      size_t value_count, int kinds);
 bool session_can_set(Session *s, const uint32_t *references, size_t count, const void *values,
                      size_t value_count, int kinds);
+/* Of a tunable parameter; all others are checked before the drive. */
+bool session_allows_value(Session *s, uint32_t reference, double value);
 bool session_set_text(Session *s, uint32_t reference, const char *text);
 
 /* FMU states; serialized, a checksum follows (state.c) */

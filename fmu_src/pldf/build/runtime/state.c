@@ -44,7 +44,7 @@ bool session_get_state(Session *s, void **state) {
 static bool same_parameters(const State *a, const State *b) {
     for (int32_t i = 0; i < model.variable_count; i++) {
         const Variable *v = &model.variables[i];
-        if (v->kind != KIND_STRING && v->causality == PARAMETER &&
+        if (v->kind != KIND_STRING && v->causality == PARAMETER && !v->tunable &&
             a->record[v->cell].integer != b->record[v->cell].integer)
             return false;
     }

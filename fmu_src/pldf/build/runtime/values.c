@@ -37,20 +37,24 @@ bool session_can_get(Session *s, const uint32_t *references, size_t count, const
 
 bool session_can_set(Session *s, const uint32_t *references, size_t count, const void *values,
                      size_t value_count, int kinds) {
-    bool parameters = false;
+    bool fixed = false;
     if (!fits(s, references, count, values, value_count)) return false;
     for (size_t i = 0; i < count; i++) {
         const Variable *v = find(s, references[i], kinds);
         if (!v) return false;
         if (v->causality == OUTPUT)
             return importer_tell(&s->importer, ERROR_LEVEL, "%s is an output, it cannot be set", v->name);
-        unsigned late = v->causality == PARAMETER ? 0 : AT_STEP;
+        unsigned late = v->causality == INPUT || v->tunable ? AT_STEP : 0;
         if (!session_allows(s, v->name, AT_START | IN_INITIALIZATION | late)) return false;
-        parameters = parameters || v->causality != INPUT;
+        fixed = fixed || !late;
     }
     s->state.stale = 1;
-    if (parameters) s->state.ready = s->prepared = false;
+    if (fixed) s->state.ready = s->prepared = false;
     return true;
+}
+
+bool session_allows_value(Session *s, uint32_t reference, double value) {
+    return run_allows(&s->importer, &model.variables[reference], value);
 }
 
 bool session_set_text(Session *s, uint32_t reference, const char *text) {
