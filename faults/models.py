@@ -22,6 +22,8 @@ from pldf.kernel.signals import Signal
 
 from vehicle_models.driver import ScriptedDriver
 from vehicle_models.driver_state import SCRIPT
+from vehicle_models.lead import LeadVehicle
+from vehicle_models.lead_state import BY_SCRIPT
 from vehicle_models.vehicle import LongitudinalVehicle
 
 from . import built
@@ -36,7 +38,7 @@ ROAD: Final = """s_m,curvature_per_m,speed_limit_mps,x_m,y_m
 
 @dataclass(frozen=True)
 class Kind:
-    """One of the three models with parameters that make it use another part of its kernel."""
+    """One of the models with parameters that make it use another part of its kernel."""
 
     fmu: str
     create: Callable[[], Instance[Any]]
@@ -46,6 +48,8 @@ class Kind:
 KINDS: Final = (
     Kind("AdaptivePLDF", DrivingFunction, {"learn": 1}),
     Kind("AdaptivePLDF", DrivingFunction, {"localization": XY}),
+    Kind("LeadVehicle", LeadVehicle, {}),
+    Kind("LeadVehicle", LeadVehicle, {"kind": BY_SCRIPT}),
     Kind("LongitudinalVehicle", LongitudinalVehicle, {}),
     Kind("ScriptedDriver", ScriptedDriver, {}),
     Kind("ScriptedDriver", ScriptedDriver, {"kind": SCRIPT}),

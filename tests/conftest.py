@@ -12,6 +12,7 @@ from native_hosts import Hosts, native_archives
 from pldf import cli
 from pldf.build.builder import build
 from pldf.cosim.fmu import Fmu
+from pldf.cosim.kinds import PARTS_IN_TRAFFIC
 from pldf.cosim.master import unpacked
 from pushed_cart import cart_recipe
 
@@ -21,7 +22,7 @@ collect_ignore = ["wheel"]
 
 @pytest.fixture(scope="session")
 def fmu_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder with the three FMUs, validated by fmpy, and the study's SSP packages."""
+    """Return a folder with all FMUs, validated by fmpy, and the study's SSP packages."""
 
     def build(folder: Path) -> None:
         assert cli.main(["build", "--out", str(folder)]) == 0
@@ -37,6 +38,13 @@ def fmus(fmu_folder: Path) -> Iterator[dict[str, Fmu]]:
 
 
 @pytest.fixture(scope="session")
+def traffic_fmus(fmu_folder: Path) -> Iterator[dict[str, Fmu]]:
+    """Return the three FMUs and the car ahead, unpacked."""
+    with unpacked(fmu_folder, PARTS_IN_TRAFFIC) as found:
+        yield found
+
+
+@pytest.fixture(scope="session")
 def native_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with the native FMUs of this platform; those for FMI 3.0 in ``fmi3``."""
     return native_archives(tmp_path_factory, "linux64")
@@ -46,6 +54,13 @@ def native_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def native_fmus(native_folder: Path) -> Iterator[dict[str, Fmu]]:
     """Return the three native FMUs, unpacked."""
     with unpacked(native_folder) as found:
+        yield found
+
+
+@pytest.fixture(scope="session")
+def native_traffic_fmus(native_folder: Path) -> Iterator[dict[str, Fmu]]:
+    """Return the three native FMUs and the car ahead, unpacked."""
+    with unpacked(native_folder, PARTS_IN_TRAFFIC) as found:
         yield found
 
 

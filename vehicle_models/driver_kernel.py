@@ -13,11 +13,12 @@ from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE
 from pldf.kernel.interpolation import cell_at, value_at
 from pldf.kernel.substeps import substep_count
 
+from .chance import draw, sow
+from .clock import NS_PER_S, to_ns
 from .driver_state import AWAY, HANDS_OFF, ON_BRAKE, ON_GAS, SCRIPT, WATCHING, DriverState
 from .pedal_kernel import brake_towards_wish, gas_towards_wish
 from .script_kernel import (
     DOWN_LONG,
-    NS_PER_S,
     RESUME,
     UP_LONG,
     ScriptArrays,
@@ -41,16 +42,11 @@ UNDER_WAY_MPS2 = 0.3
 SETTLED_MPS = 1.0
 # The wish counts as its plateau this close to it: nothing but the limit binds it.
 PLATEAU_MARGIN_MPS = 0.3
-MINSTD_FACTOR = 48271.0
-MINSTD_MODULUS = 2147483647.0
 
 
 def driver_start(st: DriverState) -> None:
     """Put the driver into the car, hands and feet off."""
-    # Neighbouring seeds give neighbouring first numbers: the first draws are thrown away.
-    st.random = st.seed + 1.0
-    for _ in range(3):
-        draw(st)
+    sow(st, st.seed)
     st.phase = AWAY
     st.delay_ns = to_ns(st.driver_start_s)
     release_all(st)
@@ -245,18 +241,6 @@ def _move_lever(st: DriverState) -> None:
         hold_lever(st, st.button)
 
 
-def to_ns(seconds: float) -> int:
-    """Seconds as whole nanoseconds."""
-    return floor(seconds * NS_PER_S + 0.5)
-
-
 def varied_ns(st: DriverState, seconds: float) -> int:
     """A delay of about ``seconds``, with the driver's spread, as whole nanoseconds."""
     return to_ns(seconds * (1.0 + st.driver_spread * (2.0 * draw(st) - 1.0)))
-
-
-def draw(st: DriverState) -> float:
-    """Next pseudo-random number above 0 and below 1 (MINSTD: exact in float64)."""
-    product = st.random * MINSTD_FACTOR
-    st.random = product - MINSTD_MODULUS * floor(product / MINSTD_MODULUS)
-    return st.random / MINSTD_MODULUS

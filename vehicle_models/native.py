@@ -1,4 +1,7 @@
-"""Entry points of vehicle and driver for the native build (see ``pldf.build.native.model``)."""
+"""Entry points of vehicle, driver and car ahead for the native build.
+
+See ``pldf.build.native.model``.
+"""
 
 from __future__ import annotations
 
@@ -10,12 +13,30 @@ from pldf.cosim.prepared import SUFFIX, prepared_script
 from pldf.kernel import interpolation, planner, substeps
 from pldf.kernel.arrays import RouteArrays, Work
 
-from . import driver_kernel, pedal_kernel, script_kernel, vehicle_kernel, wish_kernel
+from . import (
+    chance,
+    clock,
+    driver_kernel,
+    lead_kernel,
+    lead_motion,
+    lead_script_kernel,
+    pedal_kernel,
+    script_kernel,
+    traffic_kernel,
+    vehicle_kernel,
+    wish_kernel,
+)
 from .driver import INVALID_INPUT as DRIVER_INPUT
 from .driver_kernel import driver_start, driver_step
 from .driver_script import PACKED, packed_script, read_script, script_arrays
 from .driver_state import PREFERENCE, SCRIPT, DriverState, DriverTexts
+from .lead import TROUBLE_TEXT
+from .lead_kernel import lead_start, lead_step
+from .lead_script import PACKED_TRAFFIC, packed_traffic, read_traffic, traffic_arrays
+from .lead_script_kernel import LeadScriptArrays
+from .lead_state import BY_SCRIPT, TRAFFIC, LeadState, LeadTexts
 from .script_kernel import ScriptArrays
+from .traffic_kernel import RoadArrays, prepare_road
 from .vehicle import INVALID_INPUT as VEHICLE_INPUT
 from .vehicle_kernel import vehicle_refresh, vehicle_start, vehicle_step
 from .vehicle_state import VehicleState, VehicleTexts
@@ -77,6 +98,8 @@ DRIVER: Final = NativeModel(
     record=DriverState,
     texts=DriverTexts,
     modules=(
+        chance,
+        clock,
         driver_kernel,
         pedal_kernel,
         script_kernel,
@@ -96,7 +119,61 @@ DRIVER: Final = NativeModel(
 )
 
 
+LEAD_ROUTE_AT: Final = len(RoadArrays._fields)
+LEAD_WORK_AT: Final = LEAD_ROUTE_AT + len(RouteArrays._fields)
+LEAD_SCRIPT_AT: Final = LEAD_WORK_AT + len(Work._fields)
+
+
+def _lead_start(record: Any, block: Any, nodes: int, rows: int, step_s: float) -> None:
+    st = record_at(record)
+    if st.kind == TRAFFIC:
+        route = columns(RouteArrays, block, LEAD_ROUTE_AT * nodes, nodes)
+        road = columns(RoadArrays, block, 0, nodes)
+        prepare_road(st, route, road, columns(Work, block, LEAD_WORK_AT * nodes, nodes))
+    lead_start(st)
+
+
+def _lead_step(record: Any, block: Any, nodes: int, rows: int, step_s: float) -> None:
+    road = columns(RoadArrays, block, 0, nodes)
+    script = columns(LeadScriptArrays, block, LEAD_SCRIPT_AT * nodes, rows)
+    lead_step(record_at(record), road, script, step_s)
+
+
+LEAD: Final = NativeModel(
+    name="LeadVehicle",
+    about="Car ahead: by parameters, by script, or traffic from a seed",
+    record=LeadState,
+    texts=LeadTexts,
+    modules=(
+        chance,
+        clock,
+        lead_kernel,
+        lead_motion,
+        lead_script_kernel,
+        traffic_kernel,
+        interpolation,
+        substeps,
+        planner,
+    ),
+    entries={"start": _lead_start, "step": _lead_step},
+    groups=(RoadArrays, RouteArrays, Work),
+    kept=1,
+    route=RouteArrays,
+    route_if=("kind", TRAFFIC),
+    events=LeadScriptArrays,
+    events_if=("kind", BY_SCRIPT),
+    watch=Watch("trouble", tuple(TROUBLE_TEXT[code] for code in sorted(TROUBLE_TEXT))),
+)
+
+
 def packed_scripts() -> dict[str, bytes]:
-    """Return the prepared files of all packed scripts by their path in ``resources/``."""
+    """Return the driver's prepared scripts by their path in ``resources/``."""
     scripts = [script_arrays(read_script(packed_script(i))) for i in range(len(PACKED))]
+    return {f"script/{i}{SUFFIX}": prepared_script(arrays) for i, arrays in enumerate(scripts)}
+
+
+def packed_traffic_scripts() -> dict[str, bytes]:
+    """Return the prepared scripts of the car ahead by their path in ``resources/``."""
+    numbers = range(len(PACKED_TRAFFIC))
+    scripts = [traffic_arrays(read_traffic(packed_traffic(i))) for i in numbers]
     return {f"script/{i}{SUFFIX}": prepared_script(arrays) for i, arrays in enumerate(scripts)}

@@ -7,6 +7,7 @@ from typing import Annotated, Final, NamedTuple
 from pldf.kernel.arrays import Floats
 from pldf.kernel.ranges import TIME_MAX_NS, Range
 
+from .clock import NS_PER_S
 from .driver_state import DriverState
 
 # Control codes of a script; those from RESUME on are the lever's contacts.
@@ -22,7 +23,6 @@ DOWN_LONG: Final = 8
 AT_TIME: Final = 0
 AT_POSITION: Final = 1
 
-NS_PER_S = 1e9
 FINITE_MAX = 1e300
 
 

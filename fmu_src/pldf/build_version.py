@@ -31,7 +31,9 @@ _DECIDING: Final = {
     ),
     "vehicle_models": ("*.py", "scripts/*"),
 }
-_CARRYING: Final = frozenset({"native.py", "longitudinal_vehicle.py", "scripted_driver.py"})
+_CARRYING: Final = frozenset(
+    {"native.py", "lead_vehicle.py", "longitudinal_vehicle.py", "scripted_driver.py"}
+)
 # What makes native FMUs of the kernels.
 _MAKING: Final = {
     "pldf": (

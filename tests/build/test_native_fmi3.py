@@ -17,7 +17,7 @@ from fmpy import simulate_fmu
 symbols = pytest.importorskip(
     "pldf.build.native.symbols", reason="needs the extra: pip install -e .[native]"
 )
-NAMES = ("AdaptivePLDF", "LongitudinalVehicle", "ScriptedDriver")
+NAMES = ("AdaptivePLDF", "LeadVehicle", "LongitudinalVehicle", "ScriptedDriver")
 
 
 @pytest.fixture(scope="module", params=NAMES)

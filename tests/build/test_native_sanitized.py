@@ -115,6 +115,8 @@ def test_life_cycle_order_of_calls_instances_and_states(
 FORGED: dict[str, dict[str, Value]] = {
     "AdaptivePLDF": {"learn": 1},
     "AdaptivePLDF by coordinates": {"localization": 1, "apply_learned": 0},
+    "LeadVehicle": {},
+    "LeadVehicle with a script": {"kind": 1},
     "LongitudinalVehicle": {},
     "ScriptedDriver": {},
     "ScriptedDriver with a script": {"kind": 1},

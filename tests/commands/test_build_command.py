@@ -9,13 +9,13 @@ import pytest
 from pldf import cli
 from pldf.build import fmus
 from pldf.commands.build import WorkLog
-from pldf.cosim.kinds import PARTS
+from pldf.cosim.kinds import PARTS_IN_TRAFFIC
 
 Capture = pytest.CaptureFixture[str]
 
 
 def test_what_can_be_built_alone_is_what_there_is() -> None:
-    assert tuple(fmus.FMUS) == tuple(fmus.NATIVE) == tuple(sorted(PARTS.values()))
+    assert tuple(fmus.FMUS) == tuple(fmus.NATIVE) == tuple(sorted(PARTS_IN_TRAFFIC.values()))
 
 
 def test_one_fmu_alone_is_validated_and_makes_no_packages(tmp_path: Path, capsys: Capture) -> None:

@@ -12,17 +12,19 @@ import numpy as np
 import pytest
 from lxml import etree
 from pldf.cosim.fmu import Fmu
-from pldf.cosim.kinds import PARTS
+from pldf.cosim.kinds import PARTS_IN_TRAFFIC
 from pldf.cosim.master import connections
 from pldf.function import DrivingFunction
 from pldf.instance import Instance
 from pldf.kernel.signals import Signal, signals_of
 
 from vehicle_models.driver import ScriptedDriver
+from vehicle_models.lead import LeadVehicle
 from vehicle_models.vehicle import LongitudinalVehicle
 
 MODELS: dict[str, type[Instance[Any]]] = {
     "vehicle": LongitudinalVehicle,
+    "lead": LeadVehicle,
     "driver": ScriptedDriver,
     "pldf": DrivingFunction,
 }
@@ -48,7 +50,7 @@ def held(model: Instance[Any]) -> dict[str, float]:
     return {signal.name: getattr(model.record, signal.field) for signal in found}
 
 
-@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize("part", PARTS_IN_TRAFFIC)
 def test_held_outputs_do_not_follow_the_inputs(part: str) -> None:
     rng = np.random.default_rng(7)
     first: dict[str, float] = {}
@@ -64,7 +66,7 @@ def test_held_outputs_do_not_follow_the_inputs(part: str) -> None:
             disturb(model, rng)
             model.refresh()
             assert held(model) == before
-            for _ in range(20):  # long enough for a driver to react
+            for _ in range(40):  # long enough for a driver to react
                 model.step(0.1)
                 moved = moved or held(model) != first
     assert moved
@@ -72,7 +74,7 @@ def test_held_outputs_do_not_follow_the_inputs(part: str) -> None:
 
 def dependent(folder: Path, part: str, unknowns: str) -> Iterator[tuple[str, str]]:
     """Yield the pairs (output, input on which it may depend) that an FMU declares."""
-    with zipfile.ZipFile(folder / f"{PARTS[part]}.fmu") as archive:
+    with zipfile.ZipFile(folder / f"{PARTS_IN_TRAFFIC[part]}.fmu") as archive:
         root = etree.fromstring(archive.read("modelDescription.xml"))
     variables = root.findall("ModelVariables/ScalarVariable")
     for unknown in root.iterfind(f"ModelStructure/{unknowns}/Unknown"):
@@ -85,12 +87,12 @@ def dependent(folder: Path, part: str, unknowns: str) -> Iterator[tuple[str, str
 
 @pytest.mark.parametrize("unknowns", ["Outputs", "InitialUnknowns"])
 def test_the_coupled_fmus_have_no_algebraic_loop(
-    fmu_folder: Path, fmus: Mapping[str, Fmu], unknowns: str
+    fmu_folder: Path, traffic_fmus: Mapping[str, Fmu], unknowns: str
 ) -> None:
     graph: TopologicalSorter[tuple[str, str]] = TopologicalSorter()
-    for source, target in connections(fmus):
+    for source, target in connections(traffic_fmus):
         graph.add(target, source)
-    for part in PARTS:
+    for part in PARTS_IN_TRAFFIC:
         for output, given in dependent(fmu_folder, part, unknowns):
             graph.add((part, output), (part, given))
     graph.prepare()  # raises CycleError

@@ -21,11 +21,15 @@ from pldf.kernel.signals import count_output, since
 
 from vehicle_models.driver import ScriptedDriver
 from vehicle_models.driver_state import SCRIPT
+from vehicle_models.lead import LeadVehicle
+from vehicle_models.lead_state import BY_SCRIPT
 from vehicle_models.vehicle import LongitudinalVehicle
 
 MODELS: dict[str, tuple[Callable[[], Instance[Any]], dict[str, Any]]] = {
     "function": (DrivingFunction, {"learn": 1}),
     "function by coordinates": (DrivingFunction, {"localization": XY}),
+    "car ahead": (LeadVehicle, {"traffic_free_s": 0.1}),
+    "car ahead by a script": (LeadVehicle, {"kind": BY_SCRIPT}),
     "vehicle": (LongitudinalVehicle, {}),
     "driver": (ScriptedDriver, {}),
     "driver with a script": (ScriptedDriver, {"kind": SCRIPT}),

@@ -19,6 +19,7 @@ from pldf.kernel.codes import INPUT_OK, OFF_ROUTE, XY
 from pldf.kernel.signals import by_reference, signals_of
 
 from vehicle_models.driver import ScriptedDriver
+from vehicle_models.lead import LeadVehicle
 from vehicle_models.vehicle import LongitudinalVehicle
 
 Values = dict[str, Any]
@@ -103,6 +104,11 @@ FUNCTION_INPUTS: Final = {
 MODELS: Final = {
     "function by arc length": Model(DrivingFunction, {"learn": 1}, FUNCTION_INPUTS),
     "function by line": Model(DrivingFunction, {"localization": XY}, FUNCTION_INPUTS),
+    "car ahead": Model(
+        LeadVehicle,
+        {"traffic_free_s": 0.1},
+        {"vehicle_s_m": place, "vehicle_speed_mps": speed},
+    ),
     "vehicle": Model(
         LongitudinalVehicle,
         {},

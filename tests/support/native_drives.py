@@ -24,6 +24,7 @@ from pldf.kernel.signals import variables_of
 from pldf.roads import packed_route
 
 from vehicle_models.driver import ScriptedDriver
+from vehicle_models.lead import LeadVehicle
 from vehicle_models.vehicle import LongitudinalVehicle
 
 Table = NDArray[np.float64]
@@ -148,8 +149,15 @@ def driver_inputs(rng: np.random.Generator, step_s: Table) -> dict[str, Table]:
     }
 
 
+def lead_inputs(rng: np.random.Generator, step_s: Table) -> dict[str, Table]:
+    """Return a drive with jumps and nonsense."""
+    moved = motion(rng, step_s)
+    return {name: moved[name] for name in ("vehicle_s_m", "vehicle_speed_mps")}
+
+
 INSTANCES: Final[dict[str, Callable[[], Instance[Any]]]] = {
     "AdaptivePLDF": DrivingFunction,
+    "LeadVehicle": LeadVehicle,
     "LongitudinalVehicle": LongitudinalVehicle,
     "ScriptedDriver": ScriptedDriver,
 }
@@ -163,6 +171,13 @@ CASES: Final = {
     ),
     "slope": Case(
         "LongitudinalVehicle", {"grade_from_route": 0, "grade_constant": 0.07}, vehicle_inputs
+    ),
+    "one car": Case(
+        "LeadVehicle", {"kind": 0, "scene.change_s": 9.0, "scene.leave_s": 40.0}, lead_inputs
+    ),
+    "traffic script": Case("LeadVehicle", {"kind": 1, "script_id": 1}, lead_inputs),
+    "traffic": Case(
+        "LeadVehicle", {"kind": 2, "traffic.free_s": 2.0, "traffic.stay_s": 9.0}, lead_inputs
     ),
     "hands off": Case("ScriptedDriver", {"kind": 0}, driver_inputs),
     "script": Case("ScriptedDriver", {"kind": 1}, driver_inputs),

@@ -34,7 +34,7 @@ from vehicle_models.driver_script import COLUMNS as SCRIPT
 Facts = dict[str, Any]
 Things = dict[str, Facts]
 
-FMUS: Final = ("AdaptivePLDF", "LongitudinalVehicle", "ScriptedDriver")
+FMUS: Final = ("AdaptivePLDF", "LeadVehicle", "LongitudinalVehicle", "ScriptedDriver")
 ARCHIVES: Final = (".", "native", "native/fmi3")
 KEPT: Final = ("valueReference", "causality", "variability", "min", "max", "unit", "start")
 _TYPES: Final = {"Float64": "Real", "Int32": "Integer"}  # FMI 3.0's names in those of FMI 2.0

@@ -18,13 +18,21 @@ from pldf.kernel import interpolation, planner, substeps
 from pldf.kernel.arrays import RouteArrays, Work
 from pldf.kernel.codes import ACTIVE, FAULT, GAS_OVERRIDE, LEARN_FAITHFUL, STANDBY
 
-from vehicle_models import driver_kernel, pedal_kernel, script_kernel, wish_kernel
+from vehicle_models import (
+    chance,
+    clock,
+    driver_kernel,
+    pedal_kernel,
+    script_kernel,
+    wish_kernel,
+)
 from vehicle_models.driver import ScriptedDriver
 from vehicle_models.vehicle import LongitudinalVehicle
 from vehicle_models.wish_kernel import WishArrays
 
 MODULES = (
-    interpolation, substeps, planner, wish_kernel, script_kernel, pedal_kernel, driver_kernel,
+    chance, clock, interpolation, substeps, planner,
+    wish_kernel, script_kernel, pedal_kernel, driver_kernel,
 )  # fmt: skip
 SEEN = ("mode", "target_speed_mps", "set_speed_mps", "limit_mps")
 # The wish of a driver who wants exactly what the driving function does by default.

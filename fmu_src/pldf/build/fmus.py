@@ -1,4 +1,4 @@
-"""The three FMUs: what each is made of, and how it is built, of Python source or native.
+"""The four FMUs: what each is made of, and how it is built, of Python source or native.
 
 Everything that a build needs lies in the installed packages. The same sources give the same bytes.
 """
@@ -14,7 +14,7 @@ from typing import Final
 from fmpy.validation import validate_fmu  # type: ignore[import-untyped]
 
 from ..build_version import build_version
-from ..cosim.kinds import NATIVE_FOLDER
+from ..cosim.kinds import NATIVE_FOLDER, PARTS_IN_TRAFFIC
 from ..cosim.master import unpacked
 from ..cosim.platforms import PLATFORMS
 from ..errors import ModelError
@@ -61,7 +61,7 @@ PLDF: Final = Package(
 )
 MODELS: Final = Package(
     _folder_of("vehicle_models"),
-    skip=("longitudinal_vehicle.py", "native.py", "scripted_driver.py"),
+    skip=("lead_vehicle.py", "longitudinal_vehicle.py", "native.py", "scripted_driver.py"),
 )
 
 
@@ -71,6 +71,7 @@ def _recipe(script: Path, *packages: Package) -> Recipe:
 
 FMUS: Final = {
     "AdaptivePLDF": _recipe(HERE / "adaptive_pldf.py", PLDF),
+    "LeadVehicle": _recipe(MODELS.folder / "lead_vehicle.py", PLDF, MODELS),
     "LongitudinalVehicle": _recipe(MODELS.folder / "longitudinal_vehicle.py", PLDF, MODELS),
     "ScriptedDriver": _recipe(MODELS.folder / "scripted_driver.py", PLDF, MODELS),
 }
@@ -78,6 +79,7 @@ FMUS: Final = {
 # Where the native build finds its models.
 NATIVE: Final = {
     "AdaptivePLDF": "pldf.build.native.driving_function:MODEL",
+    "LeadVehicle": "vehicle_models.native:LEAD",
     "LongitudinalVehicle": "vehicle_models.native:VEHICLE",
     "ScriptedDriver": "vehicle_models.native:DRIVER",
 }
@@ -116,7 +118,10 @@ def build_native(name: str, out: Path, targets: Sequence[str], announce: Announc
     absent = [module for module in EXTRA if find_spec(module) is None]
     if absent:
         raise ValueError(f"native FMUs need {', '.join(absent)}; {NEEDS_EXTRA}")
-    from vehicle_models.native import packed_scripts  # noqa: PLC0415 - needs the extra
+    from vehicle_models.native import (  # noqa: PLC0415 - needs the extra
+        packed_scripts,
+        packed_traffic_scripts,
+    )
 
     from ..cosim.prepared import packed_files  # noqa: PLC0415
     from .native import archives  # noqa: PLC0415
@@ -124,6 +129,8 @@ def build_native(name: str, out: Path, targets: Sequence[str], announce: Announc
     resources = packed_files()
     if name == "ScriptedDriver":
         resources |= packed_scripts()
+    elif name == "LeadVehicle":
+        resources |= packed_traffic_scripts()
     packed = FMUS[name]
     recipe = archives.NativeRecipe(
         NATIVE[name],
@@ -157,7 +164,7 @@ def documented_class(script: Path) -> str:
 
 
 def build_packages(folder: Path, made: Sequence[Path], sources: Path | None = None) -> list[Path]:
-    """Build the SSP packages of the FMI 2.0 FMUs in ``folder``, if all three are among ``made``.
+    """Build the SSP packages of the FMI 2.0 FMUs in ``folder``, if all are among ``made``.
 
     Args:
         folder: where the FMUs are and the packages go.
@@ -170,7 +177,7 @@ def build_packages(folder: Path, made: Sequence[Path], sources: Path | None = No
     if not {folder / f"{name}.fmu" for name in FMUS} <= set(made):
         return []  # made for platforms that FMI 2.0 does not know
     try:
-        with unpacked(folder) as fmus:
+        with unpacked(folder, PARTS_IN_TRAFFIC) as fmus:
             written = write_packages(folder, fmus)
             if sources is not None:
                 write_sources(sources, fmus)

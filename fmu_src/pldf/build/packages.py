@@ -1,74 +1,128 @@
-"""The phases of the study as SSP packages, each with its own start values.
+"""The phases of the study as SSP packages with their own start values, without and with traffic.
 
-All phases have the same structure; what differs are the parameter sets. Nothing is wired or set
+All phases have the same structure, and in traffic one with a car ahead; what differs are the
+parameter sets. Nothing is wired or set
 here: connections and values are those of the coupled drives.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import product
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 from fmpy.ssp.ssd import read_ssd  # type: ignore[import-untyped]
 
 from ..cosim.drive_limits import STEP_S
 from ..cosim.fmu import Fmu
-from ..cosim.kinds import PARTS
+from ..cosim.kinds import PARTS, PARTS_IN_TRAFFIC
 from ..cosim.master import connections
 from ..cosim.values import Value
 from ..errors import ModelError
 from ..kernel.codes import LEARN_FAITHFUL
 from ..roads import packed_route
 from ..roads.load import STUDY_ROAD_ID
-from ..study.phases import PHASES, DriveSetting, Phase, seed_of_drive, values_of
+from ..study.phases import PHASES, TRAFFIC, DriveSetting, Phase, seed_of_drive, values_of
 from . import ssp
 from .archive import write_archive
 
+
+class Series(NamedTuple):
+    """The packages of all phases with one structure.
+
+    Attributes:
+        name: of the packages, before the phase.
+        folder: of what they say, below that of the sources.
+        about: one sentence.
+        parts: their FMUs.
+        traffic: values of the car ahead, None without one.
+        stop_time_s: end of the default experiment.
+    """
+
+    name: str
+    folder: str
+    about: str
+    parts: Mapping[str, str]
+    traffic: Mapping[str, Value] | None
+    stop_time_s: float
+
+
 # The function alone needs 211 s for the road; drivers who intervene are faster. No longer than
-# that, because time behind the end of the road lowers the rates that the function reports.
-STOP_TIME_S: Final = 220.0
+# that, because time behind the end of the road lowers the rates that the function reports. Traffic
+# takes its time.
+SERIES: Final = (
+    Series(
+        name="study",
+        folder="",
+        about="Driving function, vehicle and driver on the road of the study",
+        parts=PARTS,
+        traffic=None,
+        stop_time_s=220.0,
+    ),
+    Series(
+        name="study_traffic",
+        folder="traffic/",
+        about="Driving function, vehicle, driver and traffic on the road of the study",
+        parts=PARTS_IN_TRAFFIC,
+        traffic={"kind": TRAFFIC},
+        stop_time_s=360.0,
+    ),
+)
 
 
 def sources(fmus: Mapping[str, Fmu]) -> dict[str, bytes]:
-    """Return the readable content of all packages: the structure and each phase's values.
+    """Return the readable content of all packages: structures and each phase's values.
 
     Args:
-        fmus: from ``unpacked``.
+        fmus: those of ``PARTS_IN_TRAFFIC``, from ``unpacked``.
 
     Returns:
-        Text by path: ``SystemStructure.ssd`` and ``PHASE/PART.ssv``.
+        Text by path: ``SystemStructure.ssd`` and ``PHASE/PART.ssv``, in ``traffic/`` once more.
 
     Raises:
         ModelError: a connection or a value cannot be expressed for every importer.
     """
-    components = [
-        ssp.Component(part, f"{PARTS[part]}.fmu", fmu.signals) for part, fmu in fmus.items()
-    ]
-    system = ssp.System(
-        name="study",
-        about="Driving function, vehicle and driver on the road of the study",
-        components=components,
-        connections=connections(fmus),
-        stop_time_s=STOP_TIME_S,
-        step_s=STEP_S,
-    )
     try:
-        texts = {ssp.STRUCTURE: ssp.structure(system)}
-        for drive, phase in enumerate(PHASES.values()):
-            values = start_values(phase, drive)
-            for component in components:
-                text = ssp.parameter_set(component.signals, values[component.name])
-                texts[f"{phase.name}/{component.name}.ssv"] = text
+        return {
+            f"{series.folder}{name}": text
+            for series in SERIES
+            for name, text in _texts(series, {part: fmus[part] for part in series.parts}).items()
+        }
     except ValueError as problem:
         raise ModelError(f"SSP packages: {problem}") from None
+
+
+def _texts(series: Series, fmus: Mapping[str, Fmu]) -> dict[str, bytes]:
+    components = [
+        ssp.Component(part, f"{series.parts[part]}.fmu", fmu.signals) for part, fmu in fmus.items()
+    ]
+    system = ssp.System(
+        name=series.name,
+        about=series.about,
+        components=components,
+        connections=connections(fmus),
+        stop_time_s=series.stop_time_s,
+        step_s=STEP_S,
+    )
+    texts = {ssp.STRUCTURE: ssp.structure(system)}
+    for drive, phase in enumerate(PHASES.values()):
+        values = start_values(phase, drive, series.traffic)
+        for component in components:
+            text = ssp.parameter_set(component.signals, values[component.name])
+            texts[f"{phase.name}/{component.name}.ssv"] = text
     return texts
 
 
-def start_values(phase: Phase, drive: int) -> dict[str, dict[str, Value]]:
+def start_values(
+    phase: Phase, drive: int, traffic: Mapping[str, Value] | None = None
+) -> dict[str, dict[str, Value]]:
     """Return the values of a drive on the study's road, without enumerations, by part and name."""
     setting = DriveSetting(
-        packed_route(STUDY_ROAD_ID), {"route_id": STUDY_ROAD_ID}, seed=seed_of_drive(1, drive)
+        packed_route(STUDY_ROAD_ID),
+        {"route_id": STUDY_ROAD_ID},
+        seed=seed_of_drive(1, drive),
+        traffic=traffic,
     )
     values = values_of(phase, setting)
     portable = {part: dict(chosen) for part, chosen in values.items()}
@@ -78,7 +132,7 @@ def start_values(phase: Phase, drive: int) -> dict[str, dict[str, Value]]:
 
 
 def write_packages(folder: Path, fmus: Mapping[str, Fmu]) -> list[Path]:
-    """Write ``study_PHASE.ssp`` for every phase into ``folder``, where the FMUs are.
+    """Write ``study_PHASE.ssp`` and ``study_traffic_PHASE.ssp`` into ``folder``, to the FMUs.
 
     Raises:
         ModelError: from ``sources``, or a package is not valid.
@@ -86,13 +140,16 @@ def write_packages(folder: Path, fmus: Mapping[str, Fmu]) -> list[Path]:
     texts = sources(fmus)
     archives = {
         f"{ssp.RESOURCES}/{name}.fmu": (folder / f"{name}.fmu").read_bytes()
-        for name in PARTS.values()
+        for name in PARTS_IN_TRAFFIC.values()
     }
     written = []
-    for phase in PHASES:
-        sets = {ssp.parameter_file(part): texts[f"{phase}/{part}.ssv"] for part in PARTS}
-        path = folder / f"study_{phase}.ssp"
-        write_archive(path, {ssp.STRUCTURE: texts[ssp.STRUCTURE], **sets, **archives})
+    for series, phase in product(SERIES, PHASES):
+        members = {ssp.STRUCTURE: texts[f"{series.folder}{ssp.STRUCTURE}"]}
+        for part, name in series.parts.items():
+            members[ssp.parameter_file(part)] = texts[f"{series.folder}{phase}/{part}.ssv"]
+            members[f"{ssp.RESOURCES}/{name}.fmu"] = archives[f"{ssp.RESOURCES}/{name}.fmu"]
+        path = folder / f"{series.name}_{phase}.ssp"
+        write_archive(path, members)
         _require_valid(path)
         written.append(path)
     return written

@@ -7,7 +7,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Final
 
-from ..cosim.kinds import NATIVE_FOLDER, PARTS
+from ..cosim.kinds import NATIVE_FOLDER, PARTS_IN_TRAFFIC
 from ..cosim.platforms import PLATFORMS
 from ..errors import ModelError
 
@@ -25,7 +25,9 @@ EXAMPLE: Final = (
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``pldf build``."""
     parser.add_argument(
-        "--only", choices=sorted(PARTS.values()), help="build this FMU alone, no packages"
+        "--only",
+        choices=sorted(PARTS_IN_TRAFFIC.values()),
+        help="build this FMU alone, no packages",
     )
     parser.add_argument(
         "--out", type=Path, default=Path("dist"), metavar="FOLDER", help="default: dist"

@@ -1,4 +1,4 @@
-"""``pldf drive``: one drive of the three coupled FMUs."""
+"""``pldf drive``: one drive of the coupled FMUs."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from ..cosim.kinds import PARTS, PARTS_IN_TRAFFIC
 from ..cosim.master import Drive, drive
 from ..cosim.road_values import road_values
 from ..cosim.values import Value
@@ -20,7 +21,15 @@ from ..outcome_words import is_outcome
 from ..profiles.store import STORE_VARIABLE, ProfileStore
 from ..recordings.recording import write_recording
 from ..roads import fingerprint
-from ..study.phases import PHASES, SCRIPT, DriveSetting, Phase, values_of
+from ..study.phases import (
+    PHASES,
+    SCRIPT,
+    TRAFFIC,
+    TRAFFIC_SCRIPT,
+    DriveSetting,
+    Phase,
+    values_of,
+)
 from .shared.coupling import (
     NATIVE_IF_GOOD,
     add_coupling,
@@ -36,9 +45,11 @@ from .shared.road import required_road
 EXAMPLE: Final = (
     "pldf drive --phase A2 --store profiles --out out/A2.csv\n"
     "  pldf drive --phase B1 --store profiles --out out/B1.csv --set driver.wish.offset_mps=3\n"
-    "  pldf drive --driver script --script my_drive.csv --route road.xodr"
+    "  pldf drive --driver script --script my_drive.csv --route road.xodr\n"
+    "  pldf drive --traffic --driver none --seed 3"
 )
 
+_BY_ITSELF: Final = Path()  # --traffic without a script
 _CHANGED_MPS: Final = 0.1 / KMH_PER_MPS  # smaller changes do not count as learned
 
 
@@ -67,6 +78,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--script", type=Path, metavar="CSV", help="driver script, implies --driver script"
     )
     parser.add_argument(
+        "--traffic", type=Path, nargs="?", const=_BY_ITSELF, metavar="CSV",
+        help="with cars ahead: from a traffic script or, without one, cars that drive the road by "
+        "themselves, cut in and stop (--seed chooses which)",
+    )  # fmt: skip
+    parser.add_argument(
         "--out", type=Path, default=Path("out"), metavar="PATH",
         help="recording (.csv), or folder for drive.csv (default: out)",
     )  # fmt: skip
@@ -83,11 +99,12 @@ def run(options: argparse.Namespace) -> None:
     phase = _phase(options)
     road = required_road(options)
     csv = options.out if options.out.suffix.lower() == ".csv" else options.out / "drive.csv"
-    with chosen_fmus(options) as fmus:
+    with chosen_fmus(options, PARTS if options.traffic is None else PARTS_IN_TRAFFIC) as fmus:
         setting = DriveSetting(
             road.route, road_values(road, fmus["pldf"].folder.parent),
             options.driver_id, options.seed, options.store,
             _with_script(options, chosen_values(fmus, options.settings)),
+            _traffic(options),
         )  # fmt: skip
         with progress_bar(phase.name, road.route.length_m / 1e3, "km") as bar:
             done = drive(
@@ -139,6 +156,15 @@ def _with_script(
     if options.script:
         script["script_file"] = str(options.script.resolve())
     return {**more, "driver": {**script, **more.get("driver", {})}}
+
+
+def _traffic(options: argparse.Namespace) -> dict[str, Value] | None:
+    """Return what to set in the car ahead; None without traffic."""
+    if options.traffic is None:
+        return None
+    if options.traffic == _BY_ITSELF:
+        return {"kind": TRAFFIC}
+    return {"kind": TRAFFIC_SCRIPT, "script_file": str(options.traffic.resolve())}
 
 
 def _plot(path: Path, done: Drive, name: str) -> None:

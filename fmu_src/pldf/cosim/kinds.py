@@ -1,4 +1,4 @@
-"""The three FMUs, their two kinds, and where ``pldf build`` puts them: all that commands need."""
+"""The FMUs, their two kinds, and where ``pldf build`` puts them: all that commands need."""
 
 from __future__ import annotations
 
@@ -15,4 +15,11 @@ PARTS: Final = {
     "vehicle": "LongitudinalVehicle",
     "driver": "ScriptedDriver",
     "pldf": "AdaptivePLDF",
+}
+# With a car ahead, which sees where ours is and is seen by driver and function.
+PARTS_IN_TRAFFIC: Final = {
+    "vehicle": PARTS["vehicle"],
+    "lead": "LeadVehicle",
+    "driver": PARTS["driver"],
+    "pldf": PARTS["pldf"],
 }

@@ -1,6 +1,6 @@
-"""The one place where driving function, vehicle and driver are coupled: an FMI 2.0 master.
+"""The one place where function, vehicle, driver and car ahead are coupled: an FMI 2.0 master.
 
-All three step with the outputs of the last communication point (Jacobi), so none of them depends on
+They all step with the outputs of the last communication point (Jacobi), so none of them depends on
 the order of stepping. Nothing is wired by hand: see ``connections``.
 """
 
@@ -78,15 +78,19 @@ class Drive:
 
 
 @contextmanager
-def unpacked(folder: Path) -> Iterator[dict[str, Fmu]]:
-    """Unpack the three FMUs in ``folder`` for any number of drives; by part.
+def unpacked(folder: Path, parts: Mapping[str, str] = PARTS) -> Iterator[dict[str, Fmu]]:
+    """Unpack FMUs in ``folder`` for any number of drives; by part.
+
+    Args:
+        folder: where they are.
+        parts: their names by part: ``PARTS`` or ``PARTS_IN_TRAFFIC``.
 
     Raises:
         ModelError: one of them is missing or not usable, or does not fit the others.
     """
     with TemporaryDirectory(prefix="pldf-", ignore_cleanup_errors=True) as place:
         fmus = {
-            part: unpack(folder / f"{name}.fmu", Path(place) / name) for part, name in PARTS.items()
+            part: unpack(folder / f"{name}.fmu", Path(place) / name) for part, name in parts.items()
         }
         connections(fmus)
         yield fmus
@@ -179,9 +183,9 @@ def _silenced(slaves: Mapping[str, Slave]) -> Iterator[None]:
             yield
     finally:
         rest = printed.getvalue()
-        for part, name in PARTS.items():
-            for message in slaves[part].messages if part in slaves else ():
-                rest = rest.replace(f"{name} {part!r}: {message.text}\n", "")
+        for part, slave in slaves.items():
+            for message in slave.messages:
+                rest = rest.replace(f"{message.fmu} {part!r}: {message.text}\n", "")
         sys.stderr.write(rest)
 
 

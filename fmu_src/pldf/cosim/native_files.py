@@ -9,9 +9,11 @@ from tempfile import NamedTemporaryFile
 from typing import Final
 
 from vehicle_models.driver_script import read_script, script_arrays
+from vehicle_models.lead_script import read_traffic, traffic_arrays
 
 from ..roads import read_route
 from .fmu import Fmu
+from .kinds import PARTS_IN_TRAFFIC
 from .prepared import SUFFIX, prepared_route, prepared_script
 from .values import Value
 
@@ -24,10 +26,15 @@ def _script(path: Path) -> bytes:
     return prepared_script(script_arrays(read_script(path)))
 
 
-# parameter -> how its file is prepared
-_PREPARE: Final[dict[str, Callable[[Path], bytes]]] = {
-    "route_file": _route,
-    "script_file": _script,
+def _traffic(path: Path) -> bytes:
+    return prepared_script(traffic_arrays(read_traffic(path)))
+
+
+# part and parameter -> how the file is prepared
+_PREPARE: Final[dict[tuple[str, str], Callable[[Path], bytes]]] = {
+    **{(part, "route_file"): _route for part in PARTS_IN_TRAFFIC},
+    ("driver", "script_file"): _script,
+    ("lead", "script_file"): _traffic,
 }
 
 
@@ -42,12 +49,12 @@ def readable_values(
         ModelError: a route or a script cannot be read; names file and line.
     """
     return {
-        part: {name: _readable(fmus[part], name, value) for name, value in chosen.items()}
+        part: {name: _readable(fmus[part], (part, name), value) for name, value in chosen.items()}
         for part, chosen in values.items()
     }
 
 
-def _readable(fmu: Fmu, name: str, value: Value) -> Value:
+def _readable(fmu: Fmu, name: tuple[str, str], value: Value) -> Value:
     if not (fmu.native and name in _PREPARE and value):
         return value
     path = Path(str(value))
@@ -55,7 +62,7 @@ def _readable(fmu: Fmu, name: str, value: Value) -> Value:
 
 
 @cache
-def _prepared(folder: Path, name: str, path: Path) -> Path:
+def _prepared(folder: Path, name: tuple[str, str], path: Path) -> Path:
     data = _PREPARE[name](path)
     # A name of its own: other processes of a study prepare the same file.
     with NamedTemporaryFile(dir=folder, suffix=SUFFIX, delete=False) as file:

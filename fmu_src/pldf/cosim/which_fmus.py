@@ -13,7 +13,7 @@ import fmpy  # type: ignore[import-untyped]
 from ..build_version import build_version, native_making
 from ..errors import ModelError
 from .fmu import describe
-from .kinds import NATIVE_FOLDER, PARTS, USUAL_FOLDER, Kind
+from .kinds import NATIVE_FOLDER, PARTS, PARTS_IN_TRAFFIC, USUAL_FOLDER, Kind
 from .platforms import TARGETS
 
 PLATFORM: Final[str] = fmpy.platform_tuple
@@ -63,7 +63,7 @@ def choose_fmus(folder: Path, kind: Kind | None = None) -> Choice:
 
 @dataclass(frozen=True)
 class _FmuSet:
-    """The three FMUs in a folder."""
+    """The FMUs in a folder."""
 
     kind: Kind
     folder: Path
@@ -123,10 +123,11 @@ def _without_native(folder: Path, kind: Kind | None, by_kind: Mapping[Kind, _Fmu
 
 
 def _look(folder: Path) -> _FmuSet | None:
-    """Return what is in ``folder``; None if not all three FMUs are."""
-    paths = [folder / f"{name}.fmu" for name in PARTS.values()]
-    if not all(path.is_file() for path in paths):
+    """Return what is in ``folder``; None if not all three FMUs that every drive needs are."""
+    if not all((folder / f"{name}.fmu").is_file() for name in PARTS.values()):
         return None
+    known = (folder / f"{name}.fmu" for name in PARTS_IN_TRAFFIC.values())
+    paths = [path for path in known if path.is_file()]
     described = [describe(path) for path in paths]
     needs_python = any(fmu.coSimulation.needsExecutionTool for fmu in described)
     return _FmuSet(

@@ -31,7 +31,7 @@ Kind = Literal["Real", "Integer", "Boolean", "Enumeration", "String"]
 
 GROUPS: Final = (
     "vehicle", "driver", "lever", "teach", "lead", "rate", "drive", "profile", "hmi",
-    "planner", "control", "learning", "following", "wish", "script", "body",
+    "planner", "control", "learning", "following", "wish", "script", "body", "scene", "traffic",
 )  # fmt: skip
 
 _KEY: Final = "signal"

@@ -1,4 +1,4 @@
-"""The drives of the paper's study, and what each of them sets in the three FMUs (section 5)."""
+"""The drives of the paper's study, and what each of them sets in the FMUs (section 5)."""
 
 from __future__ import annotations
 
@@ -18,6 +18,9 @@ SEED_MAX: Final = 999_999_999
 HANDS_OFF: Final = 0
 SCRIPT: Final = 1
 PREFERENCE: Final = 2
+# Kinds of ``LeadVehicle``.
+TRAFFIC_SCRIPT: Final = 1
+TRAFFIC: Final = 2
 
 
 class Phase(NamedTuple):
@@ -65,12 +68,13 @@ class DriveSetting:
     """What one drive of the FMUs needs beside its phase.
 
     Attributes:
-        route: the route, for all three FMUs.
+        route: the route, for all FMUs.
         road: the parameters that make the FMUs use this route.
         driver_id: whose profile.
-        seed: of the driver's small irregularities.
+        seed: of the driver's small irregularities, and of traffic.
         store: folder of profiles; None: the environment decides.
         more: further values by part; they win.
+        traffic: values of the car ahead; None: there is none.
     """
 
     route: Route
@@ -79,6 +83,7 @@ class DriveSetting:
     seed: int = 1
     store: Path | None = None
     more: Values = field(default_factory=dict)
+    traffic: Mapping[str, Value] | None = None
 
     @property
     def length_m(self) -> float:
@@ -111,4 +116,6 @@ def values_of(phase: Phase, setting: DriveSetting) -> dict[str, dict[str, Value]
             "seed": setting.seed,
         },
     }
+    if setting.traffic is not None:
+        chosen["lead"] = {**setting.road, "seed": setting.seed, **setting.traffic}
     return {part: {**chosen[part], **setting.more.get(part, {})} for part in chosen}

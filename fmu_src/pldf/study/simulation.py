@@ -15,7 +15,15 @@ from typing import Any, Final, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from vehicle_models import driver_kernel, pedal_kernel, script_kernel, vehicle_kernel, wish_kernel
+from vehicle_models import (
+    chance,
+    clock,
+    driver_kernel,
+    pedal_kernel,
+    script_kernel,
+    vehicle_kernel,
+    wish_kernel,
+)
 from vehicle_models.driver import ScriptedDriver
 from vehicle_models.script_kernel import ScriptArrays
 from vehicle_models.vehicle import LongitudinalVehicle
@@ -44,7 +52,7 @@ from .phases import HANDS_OFF, PHASES, PREFERENCE, SCRIPT, Phase, seed_of_drive
 
 Packed = NDArray[np.void]
 
-DRIVER_MODULES: Final = (driver_kernel, pedal_kernel, script_kernel, wish_kernel)
+DRIVER_MODULES: Final = (chance, clock, driver_kernel, pedal_kernel, script_kernel, wish_kernel)
 COMPILED_MODULES: Final = (*KERNEL_MODULES, vehicle_kernel, *DRIVER_MODULES, loop)
 
 

@@ -12,7 +12,7 @@ from typing import Final
 from ...cosim import settable
 from ...cosim.drive_limits import STEP_S
 from ...cosim.fmu import Fmu
-from ...cosim.kinds import KINDS, NATIVE_FOLDER, USUAL_FOLDER
+from ...cosim.kinds import KINDS, NATIVE_FOLDER, PARTS, USUAL_FOLDER
 from ...cosim.master import unpacked
 from ...cosim.settable import Chosen
 from ...cosim.values import FmuMessage
@@ -42,7 +42,8 @@ def add_coupling(parser: Parser) -> None:
         "--set", dest="settings", type=setting, metavar="FMU.VARIABLE=VALUE", action="append",
         default=[],
         help="set a parameter, e.g. driver.wish.offset_mps=2 or pldf.learning.weight=0.4; FMU is "
-        "pldf, vehicle or driver and may be left out where the name is clear (repeatable)",
+        "pldf, vehicle, driver or lead (the car ahead) and may be left out where the name is clear "
+        "(repeatable)",
     )  # fmt: skip
 
 
@@ -61,14 +62,16 @@ def add_fmu(parser: argparse.ArgumentParser, usual: str) -> None:
 
 
 @contextmanager
-def chosen_fmus(options: argparse.Namespace) -> Iterator[dict[str, Fmu]]:
-    """Unpack the FMUs that ``--fmus`` and ``--fmu`` ask for; say which they are."""
+def chosen_fmus(
+    options: argparse.Namespace, parts: Mapping[str, str] = PARTS
+) -> Iterator[dict[str, Fmu]]:
+    """Unpack the FMUs of these parts that ``--fmus`` and ``--fmu`` ask for; say which they are."""
     from ...build.first_use import fmus_to_drive  # noqa: PLC0415 - brings all that builds
 
     choice = fmus_to_drive(options.fmus, options.fmu)
     for note in choice.notes:
         print(f"pldf: {note}", file=sys.stderr)
-    with unpacked(choice.folder) as fmus:
+    with unpacked(choice.folder, parts) as fmus:
         print(f"FMUs       {choice.kind}, in {choice.folder}")
         yield fmus
 
