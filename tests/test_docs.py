@@ -182,7 +182,8 @@ def test_every_target_of_make_is_there(page: Path) -> None:
             assert target in targets, line
 
 
-def test_every_variable_named_is_one_of_an_fmu(fmus: dict[str, Fmu]) -> None:
+def test_every_variable_named_is_one_of_an_fmu(traffic_fmus: dict[str, Fmu]) -> None:
+    fmus = traffic_fmus
     names = {name for fmu in fmus.values() for name in fmu.signals}
     vehicle = {f"vehicle.{name}" for name in fmus["vehicle"].signals}
     parted = {f"{part}.{name}" for part, fmu in fmus.items() for name in fmu.signals}

@@ -54,14 +54,14 @@ def lead_step(st: LeadState, road: RoadArrays, script: LeadScriptArrays, step_s:
         passed_s = (now_ns - st.time_ns) / NS_PER_S
         st.time_ns = now_ns
         st.ego_m += st.ego_mps * passed_s
+        if st.there != 0:
+            follow_wanted(st, passed_s)
         if st.kind == ONE_CAR:
             _follow_parameters(st)
         elif st.kind == BY_SCRIPT:
             follow_traffic_script(st, script)
         else:
             drive_traffic(st, road)
-        if st.there != 0:
-            follow_wanted(st, passed_s)
     _sense(st)
 
 
