@@ -1,4 +1,4 @@
-"""The car ahead: what it does by parameters, by a script and from a seed, against plain formulas."""
+"""The car ahead: by parameters, by a script and from a seed, against plain formulas."""
 
 from __future__ import annotations
 
