@@ -32,6 +32,7 @@ from .kernel import (
     interpolation,
     jerk,
     last_check,
+    last_word,
     learning,
     lever,
     localization,
@@ -48,7 +49,9 @@ from .kernel import (
     smoothing,
     stretch,
     substeps,
+    teach,
     tracking,
+    undo,
 )
 
 Namespace = dict[str, Callable[..., Any]]
@@ -70,6 +73,7 @@ KERNEL_MODULES: tuple[ModuleType, ...] = (
     recorder,
     replay,
     hmi,
+    teach,
     drive,
     stretch,
     smoothing,
@@ -79,6 +83,8 @@ KERNEL_MODULES: tuple[ModuleType, ...] = (
     outcomes,
     evidence,
     learning,
+    undo,
+    last_word,
 )
 
 

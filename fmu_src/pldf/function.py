@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import dataclass, fields
 from typing import Final, cast
 
 import numpy as np
 
+from .driver_words import LEARNED, WORDS_SAVED, Driven, answer, fill, keep_words
 from .errors import ModelError
 from .function_words import INPUT_TEXT, KEPT_BESIDE, NO_STORE, OLDER_READING
 from .instance import Arrays, Instance, Level, views, zeros
@@ -24,6 +27,7 @@ from .kernel.codes import (
 )
 from .kernel.learning import learn_drive
 from .kernel.preparation import adopt_learned, start_drive
+from .kernel.recorder import learns
 from .kernel.signals import signals_of, text_parameter
 from .kernel.state import PldfState
 from .outcome_words import lines_of
@@ -37,11 +41,7 @@ from .profiles.store import (
     ProfileUnreadable,
     StoredProfile,
 )
-from .profiles.stored_profile import COLUMN_NAMES
 from .roads import Mark, Route, chosen_route, fingerprint, route_arrays
-
-# What a drive leaves for the next one and a file keeps of it.
-LEARNED: Final = tuple(name for name in NextArrays._fields if name in COLUMN_NAMES)
 
 # Bounds of every profile, and what the base profile is planned with: it must keep to them. Where 0
 # is in the range of a parameter, it stands for no bound.
@@ -126,6 +126,7 @@ class DrivingFunction(Instance[PldfState]):
         self.trace = views(TraceArrays(*arrays[trace_at:]))
         self.work = views(zeros(Work, nodes))
         self.following = views(zeros(NextArrays, nodes))
+        self.driven = Driven(self.route, self.profile, self.trace, self.work, self.following)
 
     def refresh(self) -> None:
         """Recompute the outputs from the inputs without advancing."""
@@ -134,6 +135,9 @@ class DrivingFunction(Instance[PldfState]):
     def step(self, step_s: float) -> None:
         """Advance by one communication step."""
         drive.drive_step(self.record, self.route, self.profile, self.trace, step_s)
+        if self.record.teach_wanted:
+            for text in answer(self.record, self.driven, self.stored):
+                self.report("info", f"t = {1e-9 * self.record.time_ns:.3f} s: {text}")
         if self.record.input_state != self._reported:
             self._reported = self.record.input_state
             level: Level = "info" if self._reported == INPUT_OK else "warning"
@@ -142,20 +146,42 @@ class DrivingFunction(Instance[PldfState]):
             )
 
     def finish(self) -> None:
-        """Learn from the drive and save the profile; called once at its end."""
-        if drive.learns(self.record) and self.record.nodes >= 2 and self.stored is not None:
+        """Keep the driver's words, learn from the drive and save the profile; called once."""
+        if self.stored is None:
+            return
+        words = self.words_kept().iterations[len(self.stored.iterations) :]
+        if learns(self.record) and self.record.nodes >= 2:
             iteration = self.learn()
             for line in lines_of(self.outcomes(), self.marks):
                 self.report("info", line)
-            self._save(iteration)
+            self._save(
+                self.stored,
+                (*words, iteration),
+                f"drive {iteration.number} learned from {iteration.interventions} pedal "
+                "interventions",
+            )
+        elif words:
+            self._save(self.stored, words, WORDS_SAVED % len(words))
 
     def learn(self, kind: str = "drive") -> Iteration:
         """Return what the drive so far leaves for the next one, as the next iteration."""
+        kept = self.words_kept()
+        learn_drive(self.record, self.route, self.profile, self.trace, self.work, self.following)
+        self.learned = next_iteration(self.record, self.profile, self.following, kept, kind)
+        return self.learned
+
+    def words_kept(self) -> StoredProfile:
+        """Return what was known before the drive with an iteration for each word of the driver."""
         if self.stored is None:
             raise ModelError("nothing to learn from before the instance was initialized")
-        learn_drive(self.record, self.route, self.profile, self.trace, self.work, self.following)
-        self.learned = next_iteration(self.record, self.profile, self.following, self.stored, kind)
-        return self.learned
+        if self.record.words == 0:
+            return self.stored
+        at_the_end = copy(self.record)
+        self.follow(self.stored)
+        kept = keep_words(self.record, self.driven, self.stored)
+        for f in fields(at_the_end):
+            setattr(self.record, f.name, getattr(at_the_end, f.name))
+        return kept
 
     def outcomes(self) -> Outcomes:
         """Return what became of each intervention, once ``learn`` was called."""
@@ -173,7 +199,7 @@ class DrivingFunction(Instance[PldfState]):
         self._store = self._open_store()
         if self._store is None:
             st.profile_status = PROFILE_NOT_PERSISTED
-            if drive.learns(st) or st.apply_learned:
+            if learns(st) or st.apply_learned:
                 self.report("warning", NO_STORE)
             return new
         stored, st.profile_status = None, PROFILE_REFUSED
@@ -197,7 +223,7 @@ class DrivingFunction(Instance[PldfState]):
 
     def _tell_older_reading(self, store: ProfileStore, new: StoredProfile) -> None:
         """Say so if the driver has a profile that this road, read otherwise, seems to hide."""
-        if not (drive.learns(self.record) or self.record.apply_learned):
+        if not (learns(self.record) or self.record.apply_learned):
             return
         older = store.older_reading(new.driver_id, new.route, new.base_mps)
         if older is not None:
@@ -205,7 +231,7 @@ class DrivingFunction(Instance[PldfState]):
 
     def _require_writable(self, store: ProfileStore) -> None:
         """Tell before the drive, not after it, that what it teaches could not be saved."""
-        if not drive.learns(self.record):
+        if not learns(self.record):
             return
         try:
             store.require_writable()
@@ -213,11 +239,11 @@ class DrivingFunction(Instance[PldfState]):
             self.record.profile_status = PROFILE_NOT_WRITABLE
             self.report("warning", f"what this drive teaches cannot be saved: {problem}")
 
-    def _save(self, iteration: Iteration) -> None:
-        if self._store is None or self.stored is None:
+    def _save(self, stored: StoredProfile, new: Sequence[Iteration], what: str) -> None:
+        if self._store is None:
             return
         try:
-            saved = self._store.append(self.stored, iteration)
+            saved = self._store.append(stored, *new)
         except ProfileConflict as conflict:
             self.report("warning", str(conflict))
             return
@@ -226,11 +252,7 @@ class DrivingFunction(Instance[PldfState]):
             return
         if saved.warning:
             self.report("warning", saved.warning)
-        self.report(
-            "info",
-            f"drive {iteration.number} learned from {iteration.interventions} pedal "
-            f"interventions, saved in {saved.path}",
-        )
+        self.report("info", f"{what}, saved in {saved.path}")
 
 
 def check_bounds(st: PldfState) -> None:
@@ -252,9 +274,7 @@ def _weaker(bound: float, used: float) -> bool:
 
 def follow_newest(profile: ProfileArrays, stored: StoredProfile) -> None:
     """Fill ``profile`` with the newest iteration of ``stored``, not yet adopted."""
-    newest = stored.iteration()
-    for name in LEARNED:
-        np.asarray(getattr(profile, name))[:] = getattr(newest, name)
+    fill(profile, stored.iteration())
 
 
 def next_iteration(

@@ -17,11 +17,13 @@ from .kernel.codes import (
     BOUND_LATERAL_ACCEL,
     BOUND_LEGAL_LIMIT,
     BOUND_NONE,
+    OUTCOME_FORGOTTEN,
     OUTCOME_HOLE,
     OUTCOME_LEARNED,
     OUTCOME_NOT_ELIGIBLE,
     OUTCOME_STOP,
     OUTCOME_TAKEN_BACK,
+    OUTCOME_UNDONE,
 )
 from .kernel.units import KMH_PER_MPS
 from .outcomes import Hold, Outcomes, PedalOutcome, SetSpeedOutcome
@@ -48,10 +50,14 @@ TEXTS: Final = {
     "HOLE": NOT_LEARNED + "a hole of %s s in the recording costs %d m",
     "STOP": NOT_LEARNED + "the car was slower than %d km/h, a situation, not a wish",
     "NOT_ELIGIBLE": NOT_LEARNED + "learning was not allowed there",
+    "FORGOTTEN": NOT_LEARNED + "it began before the place was forgotten",
+    "UNDONE": NOT_LEARNED + "the driver took it back",
     "SET_SPEED": "set speed, %d to %d m%s: ",
     "SET_LEARNED": "%s km/h learned",
     "SET_CUT": "%s km/h learned of the %s km/h set, held by legal limit + tolerance",
     "SET_NOT_ELIGIBLE": "%s km/h not learned: learning was not allowed there",
+    "SET_FORGOTTEN": "%s km/h not learned: set before the place was forgotten",
+    "SET_UNDONE": "%s km/h not learned: the driver took it back",
     "SET_TAKEN_BACK": NOT_LEARNED + "taken back at once",
     "PLAN": "plan with the set speed: ",
     "SEPARATOR": "; ",
@@ -60,6 +66,12 @@ TEXTS: Final = {
     "MORE": "held at %d more places",
     "ROAD": ROAD,
     "ROADS": ROADS,
+}
+
+_WHY_NOT: Final = {
+    OUTCOME_NOT_ELIGIBLE: "NOT_ELIGIBLE",
+    OUTCOME_FORGOTTEN: "FORGOTTEN",
+    OUTCOME_UNDONE: "UNDONE",
 }
 
 # Of one intervention, so that its line stays readable.
@@ -101,9 +113,7 @@ def pedal_words(outcomes: Outcomes, pedal: PedalOutcome) -> str:
         return told + TEXTS["HOLE"] % (tenths(pedal.hole_s), whole(pedal.hole_m))
     if pedal.outcome == OUTCOME_STOP:
         return told + TEXTS["STOP"] % whole(KMH_PER_MPS * outcomes.slowest_mps)
-    if pedal.outcome == OUTCOME_NOT_ELIGIBLE:
-        return told + TEXTS["NOT_ELIGIBLE"]
-    return told + TEXTS["NOT_MOVED"]
+    return told + TEXTS[_WHY_NOT.get(pedal.outcome, "NOT_MOVED")]
 
 
 def set_speed_words(series: SetSpeedOutcome) -> str:
@@ -112,8 +122,8 @@ def set_speed_words(series: SetSpeedOutcome) -> str:
     wish = signed(KMH_PER_MPS * series.wish_mps)
     if series.outcome == OUTCOME_TAKEN_BACK:
         return TEXTS["SET_TAKEN_BACK"]
-    if series.outcome == OUTCOME_NOT_ELIGIBLE:
-        return TEXTS["SET_NOT_ELIGIBLE"] % wish
+    if series.outcome in _WHY_NOT:
+        return TEXTS["SET_" + _WHY_NOT[series.outcome]] % wish
     told = TEXTS["SET_CUT"] % (offset, wish) if series.is_cut else TEXTS["SET_LEARNED"] % offset
     return told + barred_words(series.barred_m)
 

@@ -21,7 +21,7 @@ from pldf.instance import view, views, zeros
 from pldf.kernel import replay as replay_module
 from pldf.kernel import substeps
 from pldf.kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
-from pldf.kernel.codes import XY
+from pldf.kernel.codes import INPUT_OK, XY
 from pldf.kernel.replay import Samples
 from pldf.kernel.state import PldfState
 from pldf.roads import packed_route, route_arrays
@@ -107,6 +107,8 @@ class Bench:
         for name in ("learned_mps", "offset_mps", "drive", "intervention", "lessons", "bound"):
             following = np.asarray(getattr(self.following, name))
             np.asarray(getattr(self.profile, name))[:] = following
+        taught = (self.following.drive, self.following.offset_mps)
+        self.taught = [np.count_nonzero(column) for column in taught]
         self.st.learning_lateral_accel_max_mps2 = 2.4
         self.functions["adopt_learned"](self.st, self.route, self.profile, self.work)
 
@@ -119,11 +121,34 @@ class Bench:
             self.functions["refresh"](st, self.route, self.profile)
             self.history.append((st.hmi_reason, st.mode, st.hmi_learned_delta_mps))
 
+    def speak(self) -> None:
+        """The driver's last word, in every form."""
+        st, given = self.st, (self.st, self.route, self.profile, self.trace)
+        off = np.abs(np.asarray(self.profile.learned_mps) - np.asarray(self.profile.planned_mps))
+        at = int(np.argmax(off))
+        st.vehicle_s_m, st.vehicle_speed_mps = float(at), 40.0
+        st.vehicle_x_m, st.vehicle_y_m = self.arrays[0].x_m[at], self.arrays[0].y_m[at]
+        for button in ("teach_pause", "teach_undo", "teach_undo"):
+            for pressed in (1, 0):
+                setattr(st, button, pressed)
+                self.functions["drive_step"](*given, 0.01)
+        st.s_m, st.input_state = float(at), INPUT_OK
+        self.functions["forget_here"](*given, self.work, self.following)
+        self.functions["drive_step"](*given, 0.01)
+        self.following.evidence_faster[at] = 1.25  # gone since
+        self.functions["mark_lesson"](self.profile, self.following, self.work, 1)
+        for column in self.following:
+            np.asarray(column)[:] = 0.0
+        st.taken_back = 1
+        self.functions["take_back_lesson"](*given, self.work, self.following)
+        self.history.append((st.hmi_event, st.words, st.settling, st.target_speed_mps))
+
     def run(self) -> None:
         """All of it."""
         self.drive()
         self.learn()
         self.look()
+        self.speak()
 
     def outcome(self) -> Outcome:
         """Everything that came out, as bytes."""
@@ -161,8 +186,8 @@ def test_a_drive_and_its_learning_are_the_same_to_the_bit(localization: int) -> 
     assert st.drive_interventions == 2
     assert st.set_speed_ns > 0
     assert {row[1] for row in in_python.history} == {1, 2, 3, 4}
-    assert np.count_nonzero(in_python.profile.drive) > 100
-    assert np.count_nonzero(in_python.profile.offset_mps) > 50
+    assert min(in_python.taught) > 50
+    assert st.words == 2
 
 
 def test_replaying_a_recording_is_the_same_to_the_bit() -> None:

@@ -79,9 +79,12 @@ class TraceArrays(NamedTuple):
     eligible: Floats  # node: 1 = learning was allowed, 0 = it was not, or not driven
     gap: Floats  # node: 1 = interpolated over a hole in the recording
     set_speed_mps: Floats  # node: manual set speed in force, 0 = none
+    set_barred: Floats  # node: 0, or why no set speed of before is learned (OUTCOME in codes)
     start_m: Floats  # intervention k: position at which it began
     end_m: Floats  # intervention k: position at which it ended
     barred: Floats  # intervention k: 0, or why it must not be learned (OUTCOME in codes)
+    word_kind: Floats  # word k of the driver: WORD_FORGET or WORD_UNDO (codes)
+    word_at: Floats  # word k: position of the car, or number of the iteration taken back
 
 
 class Work(NamedTuple):

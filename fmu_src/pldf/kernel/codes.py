@@ -116,9 +116,26 @@ OUTCOME_HOLE: Final = 2  # the recording has a hole where it or its stretched pi
 OUTCOME_STOP: Final = 3  # the car was slower than learning.speed_min_mps: a situation, not a wish
 OUTCOME_NOT_ELIGIBLE: Final = 4  # learning was not allowed there
 OUTCOME_TAKEN_BACK: Final = 5  # a series of presses that ended where it had begun
+OUTCOME_FORGOTTEN: Final = 6  # it began before the driver pressed "forget here", and overlaps that
+OUTCOME_UNDONE: Final = 7  # the driver pressed "undo" behind it
 OUTCOME: Final = Enumeration(
-    "Outcome", ("NOT_MOVED", "LEARNED", "HOLE", "STOP", "NOT_ELIGIBLE", "TAKEN_BACK")
+    "Outcome",
+    (
+        "NOT_MOVED",
+        "LEARNED",
+        "HOLE",
+        "STOP",
+        "NOT_ELIGIBLE",
+        "TAKEN_BACK",
+        "FORGOTTEN",
+        "UNDONE",
+    ),
 )
+
+# What the driver said, and the bits of what the runtime has to answer (section 7).
+WORD_FORGET: Final = 1
+WORD_UNDO: Final = 2
+WORDS_MAX: Final = 3  # both at once
 
 # What became of the stored profile.
 PROFILE_BASE: Final = 0

@@ -9,7 +9,6 @@ from .codes import (
     GAS_OVERRIDE,
     INPUT_INVALID,
     INPUT_OK,
-    LEARN_OFF,
     XY,
 )
 from .hmi import notice_new_limit, reason, show_event
@@ -35,8 +34,9 @@ from .modes import (
     SWITCH_ON,
     next_mode,
 )
-from .recorder import note_set_speed, record_sample
+from .recorder import learns, may_learn, note_set_speed, record_sample
 from .state import PldfState
+from .teach import hear_driver
 from .tracking import target_of, update_request
 
 # Inputs beyond these (m, m/s, m/s2, pedal travel) are a fault of the wiring, not a drive. A
@@ -45,11 +45,6 @@ POSITION_BOUND = 1e8
 SPEED_BOUND = 1e3
 ACCELERATION_BOUND = 1e3
 PEDAL_BOUND = 1e3
-
-
-def learns(st: PldfState) -> bool:
-    """Whether this drive is learned from when it ends."""
-    return st.learn != LEARN_OFF or st.learn_faithful != 0 or st.learn_consistent != 0
 
 
 def drive_step(
@@ -68,6 +63,7 @@ def drive_step(
         st.sampled_y_m = st.vehicle_y_m
         record_sample(st, route, trace)
         update_mode_and_set_speed(st, route, profile)
+        hear_driver(st, route, profile, trace)
     else:  # no sample either: what is not known is neither recorded nor a place
         st.mode = next_mode(st.mode, FAIL)
     update_request(st, route, profile, step_s)
@@ -177,6 +173,6 @@ def update_outputs(st: PldfState, route: RouteArrays, profile: ProfileArrays) ->
     st.hmi_reason_code = why
     st.profile_status_code = st.profile_status
     st.hmi_learned_delta_mps = learned - base
-    st.hmi_learning = 1 if learns(st) and st.eligible != 0 else 0
+    st.hmi_learning = 1 if learns(st) and may_learn(st) else 0
     st.hmi_next_speed_mps = settled
     st.hmi_next_distance_m = max(turn_m - s_m, 0.0)

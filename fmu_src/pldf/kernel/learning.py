@@ -40,11 +40,11 @@ def learn_drive(
     drive = st.profile_iteration + 1.0
     adopt_offsets(st, (route, profile, trace, following))
     if _adopted(st, following):
-        _plan_with_offsets(st, route, profile, work, following)
-        _carry_learned(st, route, profile, following, drive)
+        plan_with_offsets(st, route, profile, work, following)
+        carry_learned(st, route, profile, following, drive)
     insert_pieces(st, route, trace, work, following.outcome)
     learn_segments(st, trace, work, following)
-    _bound_segments(st, route, work, following, drive)
+    bound_segments(st, route, work, following, drive)
     tell_outcomes(st, route, profile, trace, following)
 
 
@@ -67,13 +67,14 @@ def _adopted(st: PldfState, following: NextArrays) -> bool:
     return adopted
 
 
-def _plan_with_offsets(
+def plan_with_offsets(
     st: PldfState,
     route: RouteArrays,
     profile: ProfileArrays,
     work: Work,
     following: NextArrays,
 ) -> None:
+    """Plan ``following`` with its offsets; where that is as in ``profile``, to the bit."""
     road = (route.limit_mps, following.offset_mps, route.curvature_per_m)
     plan(st, road, following.planned_mps, work)
     for i in range(len(following.planned_mps)):
@@ -82,7 +83,7 @@ def _plan_with_offsets(
             following.planned_mps[i] = profile.planned_mps[i]
 
 
-def _carry_learned(
+def carry_learned(
     st: PldfState,
     route: RouteArrays,
     profile: ProfileArrays,
@@ -104,7 +105,7 @@ def _carry_learned(
             following.intervention[i] = 0.0
 
 
-def _bound_segments(
+def bound_segments(
     st: PldfState, route: RouteArrays, work: Work, following: NextArrays, drive: float
 ) -> None:
     """Keep the bounds, once, on all that this drive changed; what that lowers around it joins."""

@@ -103,7 +103,10 @@ def _adopt_series(st: PldfState, drive: Drive, node: int, end: int, last: int) -
     if end == st.first_node + st.nodes - 1:
         end = _end_of_limit(route, end, nodes - 1)
     ends_m = (float(first), min(end + 1.0, nodes - 1.0))
-    if trace.eligible[_place_of(st, trace, node)] <= 0.0:
+    place = _place_of(st, trace, node)
+    if trace.set_barred[place] > 0.0:
+        _note(st, following, ends_m, (wish, 0.0), int(trace.set_barred[place]))
+    elif trace.eligible[place] <= 0.0:
         _note(st, following, ends_m, (wish, 0.0), OUTCOME_NOT_ELIGIBLE)
     else:
         _note(st, following, ends_m, (wish, value), OUTCOME_LEARNED)

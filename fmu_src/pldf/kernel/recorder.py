@@ -8,7 +8,7 @@ communication point: position, speed and pedals together with mode and set speed
 from __future__ import annotations
 
 from .arrays import RouteArrays, TraceArrays
-from .codes import ACTIVE, GAS_OVERRIDE, STANDBY
+from .codes import ACTIVE, GAS_OVERRIDE, LEARN_OFF, STANDBY
 from .interpolation import cell_at
 from .state import PldfState
 
@@ -32,9 +32,14 @@ def record_sample(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None
     st.previous_set_mps = st.shown_set_mps
 
 
+def learns(st: PldfState) -> bool:
+    """Whether this drive is learned from when it ends."""
+    return st.learn != LEARN_OFF or st.learn_faithful != 0 or st.learn_consistent != 0
+
+
 def may_learn(st: PldfState) -> bool:
     """Tell whether what the driver does now may be learned, for all that learning reads of it."""
-    return st.eligible != 0
+    return st.eligible != 0 and st.teach_pause == 0 and st.settling == 0
 
 
 def note_set_speed(st: PldfState) -> None:

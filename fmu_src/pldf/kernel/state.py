@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .codes import EVENT, INPUT_STATE, MODE, PROFILE_STATUS, REASON
+from .codes import EVENT, INPUT_STATE, MODE, PROFILE_STATUS, REASON, WORDS_MAX
 from .parameters import (
     ClusterParameters,
     ControlParameters,
@@ -214,6 +214,12 @@ class Memory:
     holds: int = whole(0, COUNT_MAX, at_most=NODES)  # runs of nodes that a bound cut, once learned
     noticed_limit_mps: float = 0.0  # the legal limit at the end of the last step
     event_ns: int = nanoseconds(at_most="time_ns")  # when the event shown began
+    # the driver's last word
+    teach_was: int = whole(0, 7)  # sum of the switches' codes
+    teach_wanted: int = whole(0, WORDS_MAX)  # what the runtime has to answer behind the step
+    settling: int = whole(-1, 1)  # sign of what the car still is off what a word put in force
+    words: int = whole(0, COUNT_MAX, at_most=NODES)
+    taken_back: int = whole(0, COUNT_MAX)  # number of the iteration that an undo takes back
     total_ns: int = nanoseconds()
     pedal_ns: int = nanoseconds(at_most="total_ns")
     set_speed_ns: int = nanoseconds(at_most="total_ns")

@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import os
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -153,8 +154,8 @@ class ProfileStore:
         """Return pairs of profiles of one driver that were probably learned on one road."""
         return pairs_of_one_road(path for path in self.files() if ".conflict-" not in path.name)
 
-    def append(self, profile: StoredProfile, iteration: Iteration) -> Saved:
-        """Save ``profile``, as it was loaded for this drive (or new), with ``iteration`` added.
+    def append(self, profile: StoredProfile, *iterations: Iteration) -> Saved:
+        """Save ``profile``, as it was loaded for this drive (or new), with ``iterations`` added.
 
         The base profile may have been planned anew; the history must still be the one in the file.
 
@@ -163,7 +164,7 @@ class ProfileStore:
                 own.
             ModelError: the result is not sound, the folder cannot be written to or is locked.
         """
-        extended = profile.with_iteration(iteration)
+        extended = replace(profile, iterations=(*profile.iterations, *iterations))
         return save(
             self.path(profile.driver_id, profile.route),
             extended,

@@ -10,9 +10,9 @@ from dataclasses import fields
 from math import inf
 from typing import Any, Final
 
+from ...driver_words import LEARNED
 from ...fmi.phases import Phase
 from ...fmi.session import STEP_MAX_S
-from ...function import LEARNED
 from ...function_words import OLDER_READING
 from ...kernel.arrays import NextArrays, ProfileArrays, TraceArrays
 from ...kernel.codes import BOUND, LOCALIZATION, OUTCOME, PROFILE_STATUS

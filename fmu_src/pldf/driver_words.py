@@ -1,0 +1,114 @@
+"""The driver's words between steps: answered at once, and kept as iterations at the end.
+
+The kernel hears a press (``kernel/teach.py``) and changes what is in force
+(``kernel/last_word.py``). What it cannot know is the history in the file.
+``build/runtime/words.c`` does the same.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from .kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
+from .kernel.codes import EVENT_FORGOTTEN, EVENT_NOTHING_TO_UNDO, INPUT_OK, WORD_FORGET, WORD_UNDO
+from .kernel.hmi import start_event
+from .kernel.last_word import forget_here, take_back_lesson
+from .kernel.state import PldfState
+from .kernel.undo import mark_lesson
+from .profiles.lessons import UNDO_NOTE, lessons_in_force
+from .profiles.stored_profile import COLUMN_NAMES, Iteration, StoredProfile
+
+# What a drive leaves for the next one and a file keeps of it.
+LEARNED: Final = tuple(name for name in NextArrays._fields if name in COLUMN_NAMES)
+
+FORGET_NOTE: Final = "forget at %d m"
+# Printf formats, the same in the native FMUs; behind the time.
+FORGOTTEN: Final = "what was learned here (%d m) is forgotten"
+NOTHING_TO_FORGET: Final = "nothing is learned here (%d m): nothing to forget"
+UNDONE: Final = "what iteration %d taught is taken back"
+NOTHING_TO_UNDO: Final = "nothing taught is in force: nothing to undo"
+# Behind the drive.
+WORDS_SAVED: Final = "%d words of the driver kept"
+
+
+class Driven(NamedTuple):
+    """The arrays of an instance that drives."""
+
+    route: RouteArrays
+    profile: ProfileArrays
+    trace: TraceArrays
+    work: Work
+    following: NextArrays
+
+
+def answer(st: PldfState, arrays: Driven, stored: StoredProfile | None) -> list[str]:
+    """Do what the last step heard; return what to tell about it."""
+    wanted, st.teach_wanted = st.teach_wanted, 0
+    told = []
+    if wanted & WORD_FORGET:
+        forget_here(st, *arrays)
+        text = FORGOTTEN if st.hmi_event == EVENT_FORGOTTEN else NOTHING_TO_FORGET
+        told.append(text % int(st.s_m))
+    if wanted & WORD_UNDO:
+        number = lesson_to_undo(st, arrays.trace, stored)
+        if stored is not None and number > 0:
+            undo(st, arrays, stored, number)
+            told.append(UNDONE % number)
+        else:
+            start_event(st, EVENT_NOTHING_TO_UNDO)
+            told.append(NOTHING_TO_UNDO)
+    return told
+
+
+def lesson_to_undo(st: PldfState, trace: TraceArrays, stored: StoredProfile | None) -> int:
+    """Return the number of the newest iteration of ``stored`` that taught and is in force, or 0."""
+    if stored is None or not st.apply_learned or st.words >= len(trace.word_kind):
+        return 0
+    undone = [int(trace.word_at[k]) for k in range(st.words) if trace.word_kind[k] == WORD_UNDO]
+    return next(lessons_in_force(stored, undone), 0)
+
+
+def undo(st: PldfState, arrays: Driven, stored: StoredProfile, number: int) -> None:
+    """Take back iteration ``number`` of ``stored``, in force at once."""
+    st.taken_back = number
+    fill(arrays.following, stored.iteration(number))
+    mark_lesson(arrays.profile, arrays.following, arrays.work, number)
+    fill(arrays.following, stored.iteration(number - 1))
+    take_back_lesson(st, *arrays)
+
+
+def fill(to: ProfileArrays | NextArrays, iteration: Iteration) -> None:
+    """Copy what ``iteration`` holds of what the kernel knows."""
+    for name in LEARNED:
+        np.asarray(getattr(to, name))[:] = getattr(iteration, name)
+
+
+def keep_words(st: PldfState, arrays: Driven, stored: StoredProfile) -> StoredProfile:
+    """Return ``stored`` with an iteration for each word of the drive.
+
+    All words are said again, on what the drive began with: so what is kept is what was in force
+    behind each, to the bit. ``arrays`` must hold that, and in the trace the words; they end as they
+    were at the end of the drive. ``st`` is overwritten.
+    """
+    said = [(int(arrays.trace.word_kind[k]), arrays.trace.word_at[k]) for k in range(st.words)]
+    st.words, st.input_state = 0, INPUT_OK
+    st.nodes = st.drive_interventions = 0  # nothing recorded is barred a second time
+    kept = stored
+    for kind, at in said:
+        if kind == WORD_UNDO and 0 < at <= len(stored.iterations):
+            undo(st, arrays, stored, int(at))
+            kept = kept.with_iteration(_word(kept, arrays, "undo", UNDO_NOTE % int(at)))
+        elif kind == WORD_FORGET:
+            st.s_m = at
+            forget_here(st, *arrays)
+            kept = kept.with_iteration(_word(kept, arrays, "forget", FORGET_NOTE % int(at)))
+    return kept
+
+
+def _word(kept: StoredProfile, arrays: Driven, kind: str, note: str) -> Iteration:
+    columns = {name: np.array(getattr(arrays.profile, name)) for name in LEARNED}
+    return kept.next_iteration(
+        kind, note, 0, {"base_mps": np.array(arrays.profile.base_mps), **columns}
+    )
