@@ -17,6 +17,7 @@ from .kernel.codes import (
     BOUND_LATERAL_ACCEL,
     BOUND_LEGAL_LIMIT,
     BOUND_NONE,
+    OUTCOME_FOLLOWING,
     OUTCOME_FORGOTTEN,
     OUTCOME_HOLE,
     OUTCOME_LEARNED,
@@ -52,6 +53,7 @@ TEXTS: Final = {
     "NOT_ELIGIBLE": NOT_LEARNED + "learning was not allowed there",
     "FORGOTTEN": NOT_LEARNED + "it began before the place was forgotten",
     "UNDONE": NOT_LEARNED + "the driver took it back",
+    "FOLLOWING": NOT_LEARNED + "it happened behind a car that set the speed",
     "SET_SPEED": "set speed, %d to %d m%s: ",
     "SET_LEARNED": "%s km/h learned",
     "SET_CUT": "%s km/h learned of the %s km/h set, held by legal limit + tolerance",
@@ -72,6 +74,7 @@ _WHY_NOT: Final = {
     OUTCOME_NOT_ELIGIBLE: "NOT_ELIGIBLE",
     OUTCOME_FORGOTTEN: "FORGOTTEN",
     OUTCOME_UNDONE: "UNDONE",
+    OUTCOME_FOLLOWING: "FOLLOWING",
 }
 
 # Of one intervention, so that its line stays readable.

@@ -92,6 +92,7 @@ class Bench:
             st.lever_up_long = int(2200 < k < 2210)
             st.driver_gas_pedal = 0.3 if 1000 < k < 1300 else 0.0
             st.driver_brake_pedal = 0.3 if 3000 < k < 3150 else 0.0
+            self._let_a_car_cut_in(k)
             step(st, self.route, self.profile, self.trace, STEP_S if k % 100 else 0.037)
             wanted = float(st.acceleration_request_mps2) if st.function_active else 0.0
             acceleration = wanted + 4.0 * st.driver_gas_pedal - 7.0 * st.driver_brake_pedal
@@ -99,6 +100,14 @@ class Bench:
             s_m += speed * STEP_S
             seen = (wanted, st.mode, st.target_speed_mps, st.set_speed_mps, st.hmi_reason)
             self.history.append((*seen, st.hmi_next_distance_m, st.rate_combined))
+
+    def _let_a_car_cut_in(self, k: int) -> None:
+        """Too near, then gone for a moment, then braking to a stop; and a temporary limit."""
+        st = self.st
+        st.lead_present = int(4000 < k < 4300 or 4330 < k < 5000)
+        st.lead_gap_m = 9.0 if k < 4100 else 25.0 if k < 4300 else 2.0
+        st.lead_speed_mps = 8.0 if k < 4300 else 0.0
+        st.limit_override_mps = 14.0 if 5500 < k < 5600 else 0.0
 
     def learn(self) -> None:
         """Learn, and take over what was learned, under a harder bound: so the bounds cut it."""
@@ -203,6 +212,8 @@ def test_replaying_a_recording_is_the_same_to_the_bit() -> None:
         random.choice([20.0, 25.0], count),
         random.choice([0.0, 2.0], count),
         random.integers(0, 2, count).astype(float),
+        random.integers(0, 2, count).astype(float),
+        random.choice([0.0, 15.0], count),
     ]
     for functions, native in ((plain(), False), (kernel(), True)):
         bench = Bench(functions, native)

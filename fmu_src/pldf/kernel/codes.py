@@ -118,6 +118,7 @@ OUTCOME_NOT_ELIGIBLE: Final = 4  # learning was not allowed there
 OUTCOME_TAKEN_BACK: Final = 5  # a series of presses that ended where it had begun
 OUTCOME_FORGOTTEN: Final = 6  # it began before the driver pressed "forget here", and overlaps that
 OUTCOME_UNDONE: Final = 7  # the driver pressed "undo" behind it
+OUTCOME_FOLLOWING: Final = 8  # a lead car limited during it
 OUTCOME: Final = Enumeration(
     "Outcome",
     (
@@ -129,6 +130,7 @@ OUTCOME: Final = Enumeration(
         "TAKEN_BACK",
         "FORGOTTEN",
         "UNDONE",
+        "FOLLOWING",
     ),
 )
 

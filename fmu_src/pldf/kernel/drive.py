@@ -11,6 +11,7 @@ from .codes import (
     INPUT_OK,
     XY,
 )
+from .following import confirm_restart, look_ahead
 from .hmi import notice_new_limit, reason, show_event
 from .interpolation import place_at, value_at, value_of
 from .lever import (
@@ -18,6 +19,8 @@ from .lever import (
     RESUME_CONTACT,
     automatic_set_speed,
     closed_contacts,
+    notice_temporary_limit,
+    temporary_limit,
     update_set_speed,
 )
 from .localization import locate
@@ -61,11 +64,13 @@ def drive_step(
         st.sampled_s_m = st.vehicle_s_m
         st.sampled_x_m = st.vehicle_x_m
         st.sampled_y_m = st.vehicle_y_m
+        notice_temporary_limit(st, route)
         record_sample(st, route, trace)
         update_mode_and_set_speed(st, route, profile)
         hear_driver(st, route, profile, trace)
     else:  # no sample either: what is not known is neither recorded nor a place
         st.mode = next_mode(st.mode, FAIL)
+    look_ahead(st, route, profile, step_s)
     update_request(st, route, profile, step_s)
     st.time_ns += int(1e9 * step_s + 0.5)  # whole: a sum of float steps would drift
     show_event(st)
@@ -118,6 +123,10 @@ def check_inputs(st: PldfState) -> None:
         good = good and -POSITION_BOUND < st.vehicle_y_m < POSITION_BOUND
     else:
         good = good and -POSITION_BOUND < st.vehicle_s_m < POSITION_BOUND
+    if st.lead_present != 0:
+        good = good and -POSITION_BOUND < st.lead_gap_m < POSITION_BOUND
+        good = good and -SPEED_BOUND < st.lead_speed_mps < SPEED_BOUND
+    good = good and 0.0 <= st.limit_override_mps < SPEED_BOUND
     st.input_state = INPUT_OK
     if not good:
         st.input_state = INPUT_INVALID
@@ -132,6 +141,7 @@ def update_mode_and_set_speed(st: PldfState, route: RouteArrays, profile: Profil
         mode = next_mode(mode, RECOVER)
     if closed & RESUME_CONTACT:
         mode = next_mode(mode, RESUME)
+        confirm_restart(st)
     if closed & CANCEL_CONTACT:
         mode = next_mode(mode, CANCEL)
     pressed = st.driver_gas_pedal > st.control_pedal_threshold
@@ -151,6 +161,9 @@ def update_outputs(st: PldfState, route: RouteArrays, profile: ProfileArrays) ->
     cell = place[0]
     limit = route.limit_mps[cell]
     automatic = automatic_set_speed(route, profile, cell)
+    temporary = temporary_limit(st, route, cell)
+    if temporary > 0.0:
+        limit = automatic = temporary
     manual = st.manual_set_mps if s_m < st.manual_end_m else 0.0
     target = target_of(st, route, profile, s_m, place)
     base = value_of(profile.base_mps, place)

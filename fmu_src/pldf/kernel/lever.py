@@ -44,6 +44,23 @@ def automatic_set_speed(route: RouteArrays, profile: ProfileArrays, cell: int) -
     return route.limit_mps[cell] + profile.offset_mps[cell]
 
 
+def temporary_limit(st: PldfState, route: RouteArrays, cell: int) -> float:
+    """Return the temporary limit in m/s if it is lower than the legal one of ``cell``, else 0."""
+    temporary = st.limit_override_mps
+    return temporary if 0.0 < temporary < route.limit_mps[cell] else 0.0
+
+
+def notice_temporary_limit(st: PldfState, route: RouteArrays) -> None:
+    """Remember the temporary limit that binds at this sample, 0 = none.
+
+    Where it changes the manual set speed is dropped, as at a sign.
+    """
+    temporary = temporary_limit(st, route, cell_at(len(route.limit_mps), st.s_m))
+    if temporary != st.temporary_mps:
+        st.manual_set_mps = 0.0
+    st.temporary_mps = temporary
+
+
 def update_set_speed(
     st: PldfState, route: RouteArrays, profile: ProfileArrays, closed: int
 ) -> None:
@@ -54,7 +71,9 @@ def update_set_speed(
     if tip == 0.0 or st.mode in (OFF, FAULT):
         return
     cell = cell_at(len(route.limit_mps), st.s_m)
-    automatic = automatic_set_speed(route, profile, cell)
+    automatic = st.temporary_mps
+    if automatic == 0.0:
+        automatic = automatic_set_speed(route, profile, cell)
     wanted = (st.manual_set_mps if st.manual_set_mps > 0.0 else automatic) + tip
     wanted = min(max(wanted, st.control_set_speed_min_mps), st.control_set_speed_max_mps)
     # Learned, not planned: behind the sign the car goes on with the profile it follows.

@@ -8,7 +8,7 @@ communication point: position, speed and pedals together with mode and set speed
 from __future__ import annotations
 
 from .arrays import RouteArrays, TraceArrays
-from .codes import ACTIVE, GAS_OVERRIDE, LEARN_OFF, STANDBY
+from .codes import ACTIVE, GAS_OVERRIDE, LEARN_OFF, OUTCOME_FOLLOWING, STANDBY
 from .interpolation import cell_at
 from .state import PldfState
 
@@ -30,6 +30,7 @@ def record_sample(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None
     st.previous_mode = st.mode
     st.previous_brake = _brakes(st)
     st.previous_set_mps = st.shown_set_mps
+    st.previous_limits = st.following_limits
 
 
 def learns(st: PldfState) -> bool:
@@ -39,7 +40,8 @@ def learns(st: PldfState) -> bool:
 
 def may_learn(st: PldfState) -> bool:
     """Tell whether what the driver does now may be learned, for all that learning reads of it."""
-    return st.eligible != 0 and st.teach_pause == 0 and st.settling == 0
+    wanted = st.eligible != 0 and st.teach_pause == 0 and st.settling == 0
+    return wanted and st.following_limits == 0 and st.temporary_mps == 0.0
 
 
 def note_set_speed(st: PldfState) -> None:
@@ -57,10 +59,16 @@ def _brakes(st: PldfState) -> int:
 
 
 def _count_time(st: PldfState) -> None:
-    """Charge the time since the previous sample to what was in force at that sample."""
+    """Charge the time since the previous sample to what was in force at that sample.
+
+    Time behind a lead car that limits is no time of the drive, for no rate (section 8).
+    """
     if st.samples == 0:
         return
     passed = st.time_ns - st.previous_ns
+    if st.previous_limits != 0:
+        st.gap_limited_ns += passed
+        return
     st.total_ns += passed
     if st.intervening != 0:
         st.pedal_ns += passed
@@ -78,9 +86,11 @@ def _follow_intervention(st: PldfState, trace: TraceArrays) -> None:
         st.intervening = 0
         st.intervention_end_ns = st.time_ns
         st.gap_uncovered_ns = 0
+        st.gap_limited_ns = 0
         _extend(st, trace)
     elif st.intervening != 0:
         _extend(st, trace)
+        _bar_behind_lead(st, trace)
     elif _driver_took_over(st):
         _open_intervention(st, trace)
 
@@ -107,13 +117,20 @@ def _open_intervention(st: PldfState, trace: TraceArrays) -> None:
     # Pedal bounce: the gap belongs to the intervention after all, so its time is charged late, for
     # the combined rate only what no set-speed offset has covered already.
     if st.drive_interventions > 0 and gap_ns < 1e9 * st.learning_pedal_gap_s:
-        st.pedal_ns += gap_ns
+        st.pedal_ns += gap_ns - st.gap_limited_ns
         st.combined_ns += st.gap_uncovered_ns
         _extend(st, trace)
     elif st.drive_interventions < len(trace.start_m):  # there is room for one per metre
         st.drive_interventions += 1
         trace.start_m[st.drive_interventions - 1] = _furthest(st)
         _extend(st, trace)
+    _bar_behind_lead(st, trace)
+
+
+def _bar_behind_lead(st: PldfState, trace: TraceArrays) -> None:
+    """An intervention during which a lead car limits may be about that car (section 8)."""
+    if st.following_limits != 0:
+        trace.barred[st.drive_interventions - 1] = OUTCOME_FOLLOWING
 
 
 def _extend(st: PldfState, trace: TraceArrays) -> None:

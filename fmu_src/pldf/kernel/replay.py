@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from .arrays import Floats, RouteArrays, TraceArrays
+from .lever import notice_temporary_limit
 from .recorder import note_set_speed, record_sample
 from .state import PldfState
 
@@ -20,6 +21,8 @@ class Samples(NamedTuple):
     set_speed_mps: Floats
     set_speed_offset_mps: Floats
     eligible: Floats
+    following_limits: Floats
+    limit_override_mps: Floats
 
 
 def replay(st: PldfState, route: RouteArrays, trace: TraceArrays, samples: Samples) -> None:
@@ -33,5 +36,8 @@ def replay(st: PldfState, route: RouteArrays, trace: TraceArrays, samples: Sampl
         st.set_speed_mps = samples.set_speed_mps[k]
         st.set_speed_offset_mps = samples.set_speed_offset_mps[k]
         st.eligible = int(samples.eligible[k])
+        st.following_limits = int(samples.following_limits[k])
+        st.limit_override_mps = samples.limit_override_mps[k]
+        notice_temporary_limit(st, route)
         note_set_speed(st)
         record_sample(st, route, trace)

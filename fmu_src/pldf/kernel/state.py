@@ -220,6 +220,18 @@ class Memory:
     settling: int = whole(-1, 1)  # sign of what the car still is off what a word put in force
     words: int = whole(0, COUNT_MAX, at_most=NODES)
     taken_back: int = whole(0, COUNT_MAX)  # number of the iteration that an undo takes back
+    previous_limits: int = flag()
+    gap_limited_ns: int = nanoseconds()  # time behind a lead car since the last intervention
+    temporary_mps: float = 0.0  # the temporary limit where it binds, 0 = it does not
+    # the car ahead: as last seen, moved on with its speed while it is lost
+    lead_counts: int = flag()
+    lead_ahead_m: float = 0.0
+    lead_mps: float = 0.0
+    lead_seen_ns: int = nanoseconds(at_most="time_ns")
+    lead_ns: int = nanoseconds(at_most="time_ns")  # of this gap
+    less_ns: int = nanoseconds(low=-1, start=-1, at_most="time_ns")  # following asked for less
+    standing: int = flag()  # held behind a lead car
+    standing_ns: int = nanoseconds(at_most="time_ns")  # since then, or since RESUME
     total_ns: int = nanoseconds()
     pedal_ns: int = nanoseconds(at_most="total_ns")
     set_speed_ns: int = nanoseconds(at_most="total_ns")

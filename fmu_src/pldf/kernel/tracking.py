@@ -11,9 +11,10 @@ from math import sqrt
 
 from .arrays import ProfileArrays, RouteArrays
 from .codes import ACTIVE, FAULT, GAS_OVERRIDE, INPUT_INVALID
+from .gap import followed_request
 from .interpolation import Place, place_at, value_of
 from .last_check import checked_request
-from .lever import automatic_set_speed
+from .lever import automatic_set_speed, temporary_limit
 from .state import PldfState
 from .substeps import substep_count
 
@@ -36,7 +37,22 @@ def target_speed(st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m:
 def target_of(
     st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m: float, place: Place
 ) -> float:
-    """Return the same for ``s_m``, whose place is known."""
+    """Return the same for ``s_m``, whose place is known.
+
+    A temporary limit caps it, until the driver sets another speed.
+    """
+    target = _planned_target(st, route, profile, s_m, place)
+    temporary = temporary_limit(st, route, place[0])
+    if temporary > 0.0:
+        by_hand = st.manual_set_mps > 0.0 and s_m < st.manual_end_m
+        return min(target, st.manual_set_mps if by_hand else temporary)
+    return target
+
+
+def _planned_target(
+    st: PldfState, route: RouteArrays, profile: ProfileArrays, s_m: float, place: Place
+) -> float:
+    """Return the target under the legal limits of the route alone."""
     learned = value_of(profile.learned_mps, place)
     if st.manual_set_mps <= 0.0 or s_m >= st.manual_end_m:
         return learned
@@ -59,21 +75,33 @@ def update_request(
     change = st.control_request_jerk_max_mps3 * step_s / substeps
     # Each part aims at where the car then is, so the result hardly depends on the importer's step.
     for k in range(substeps):
-        wanted = _wanted(st, route, profile, step_s * k / substeps)
+        wanted = _wanted(st, route, profile, step_s * k / substeps, step_s)
         wanted = min(max(wanted, st.control_request_min_mps2), st.control_request_max_mps2)
         low = st.acceleration_request_mps2 - change
         high = st.acceleration_request_mps2 + change
         st.acceleration_request_mps2 = min(max(wanted, low), high)
 
 
-def _wanted(st: PldfState, route: RouteArrays, profile: ProfileArrays, ahead_s: float) -> float:
+def _wanted(
+    st: PldfState, route: RouteArrays, profile: ProfileArrays, ahead_s: float, step_s: float
+) -> float:
     """Return the acceleration to aim at, ``ahead_s`` after the sample of the inputs."""
     # The gas pedal adds to the request; and of a car that is not known nothing can be asked.
     if st.mode in (GAS_OVERRIDE, FAULT) or st.input_state == INPUT_INVALID:
         return 0.0
-    acceleration = st.vehicle_acceleration_mps2
     if st.mode != ACTIVE:
-        return acceleration
+        return st.vehicle_acceleration_mps2
+    return followed_request(st, profile_request(st, route, profile, ahead_s), ahead_s, step_s)
+
+
+def profile_request(
+    st: PldfState, route: RouteArrays, profile: ProfileArrays, ahead_s: float
+) -> float:
+    """Return the acceleration that profile and set speed ask for, after the last check.
+
+    It is that for ``ahead_s`` after the sample of the inputs, whatever the mode.
+    """
+    acceleration = st.vehicle_acceleration_mps2
     start = max(st.vehicle_speed_mps, 0.0)
     speed = max(start + acceleration * ahead_s, 0.0)
     s_m = st.s_m + 0.5 * (start + speed) * ahead_s

@@ -87,7 +87,10 @@ def learn_from(
     function.follow(stored)
     whole = completed(recording, function, file)
     columns = whole.columns
-    samples = Samples(*(view(np.ascontiguousarray(columns[name])) for name in Samples._fields))
+    absent = np.zeros(len(recording))  # no lead car limited, no temporary limit
+    samples = Samples(
+        *(view(np.ascontiguousarray(columns.get(name, absent))) for name in Samples._fields)
+    )
     replay(function.record, function.route, function.trace, samples)
     if function.record.nodes < 2:
         where = f"{file}: " if file else ""

@@ -114,6 +114,7 @@ static void add_pedal(Line *line, const State *state, const Run *run, int64_t k)
     case OUTCOME_HOLE: add(line, TEXT_HOLE, tenths("", NEXT(HOLE_S)).text, whole(NEXT(HOLE_M))); break;
     case OUTCOME_STOP: add(line, TEXT_STOP, whole(KMH_PER_MPS * state->record[l->speed_min].real)); break;
     case OUTCOME_NOT_ELIGIBLE: add(line, TEXT_NOT_ELIGIBLE); break;
+    case OUTCOME_FOLLOWING: add(line, TEXT_FOLLOWING); break;
     default: add(line, TEXT_NOT_MOVED);
     }
 }
