@@ -49,11 +49,11 @@ def test_the_drive_that_is_compared_has_a_bit_of_everything(
 def test_each_intervention_has_one_line(made: DrivingFunction) -> None:
     told = lines(made)
     st = made.record
-    assert st.drive_interventions == 7
-    for k in range(7):
+    assert st.drive_interventions == 8
+    for k in range(8):
         assert told[k].startswith(f"pedal intervention {k + 1}, ")
     assert sum(line.startswith("set speed, ") for line in told) == st.set_series
-    assert len(told) == 7 + st.set_series + 1  # and one about the plan with the set speeds
+    assert len(told) == 8 + st.set_series + 1  # and one about the plan with the set speeds
 
 
 def test_a_bound_is_told_with_its_place_and_speed(made: DrivingFunction) -> None:

@@ -33,6 +33,7 @@ class Lead:
         self.s_m, self.speed_mps = s_m, speed_mps
 
     def step(self, acceleration_mps2: float, step_s: float = STEP_S) -> None:
+        """Move on with this acceleration, down to a stop."""
         before = self.speed_mps
         self.speed_mps = max(before + acceleration_mps2 * step_s, 0.0)
         self.s_m += 0.5 * (before + self.speed_mps) * step_s

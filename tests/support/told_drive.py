@@ -63,6 +63,8 @@ def told_drive() -> Iterator[tuple[float, float, Inputs]]:
         gas = any(a <= s_m < b for a, b in ((400, 500), (1050, 1300), (1700, 1900), (2600, 2700)))
         gas |= 40 <= standing < 50 and speed == 0.0
         gas |= s_m >= 4800.0
+        lead = 3390.0 <= s_m < 3510.0
+        gas |= 3400.0 <= s_m < 3500.0
         yield (
             time_s,
             step_s,
@@ -74,6 +76,9 @@ def told_drive() -> Iterator[tuple[float, float, Inputs]]:
                 "lever_resume": 0.3 < time_s < 0.5 or 20 <= standing < 25,
                 "lever_up_long": any(_tip(s_m, at) for at in presses),
                 "lever_down_long": _tip(s_m, 730.0),
+                "lead_present": lead,
+                "lead_gap_m": 20.0 if lead else 0.0,
+                "lead_speed_mps": speed if lead else 0.0,
                 "eligible": not (2500.0 <= s_m < 2800.0 or 440.0 <= s_m < 450.0),
             },
         )
