@@ -43,9 +43,10 @@ def find_lead(st: PldfState) -> None:
         st.lead_ahead_m = st.lead_gap_m
         st.lead_mps = st.lead_speed_mps
         speed = max(st.vehicle_speed_mps, 0.0)
+        gap_m = max(st.lead_gap_m, 0.0)  # below 0 they touch
         time_gap_s = TIME_GAP_MAX_S
-        if st.lead_gap_m < TIME_GAP_MAX_S * speed:
-            time_gap_s = max(st.lead_gap_m, 0.0) / speed
+        if gap_m < TIME_GAP_MAX_S * speed:
+            time_gap_s = gap_m / speed
         st.following_time_gap_s = time_gap_s
     elif st.lead_counts != 0:
         passed_s = 1e-9 * (st.time_ns - st.lead_ns)
