@@ -13,6 +13,7 @@ import numpy as np
 from .driver_words import LEARNED, WORDS_SAVED, Driven, answer, fill, keep_words
 from .errors import ModelError
 from .function_words import INPUT_TEXT, KEPT_BESIDE, NO_STORE, OLDER_READING
+from .hmi_texts import text_of
 from .instance import Arrays, Instance, Level, views, zeros
 from .kernel import drive
 from .kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
@@ -28,7 +29,7 @@ from .kernel.codes import (
 from .kernel.learning import learn_drive
 from .kernel.preparation import adopt_learned, start_drive
 from .kernel.recorder import learns
-from .kernel.signals import signals_of, text_parameter
+from .kernel.signals import signals_of, since, text_output, text_parameter
 from .kernel.state import PldfState
 from .outcome_words import lines_of
 from .outcomes import Outcomes, outcomes_of
@@ -53,13 +54,14 @@ BOUNDS: Final = tuple(
 
 @dataclass(slots=True)
 class Files:
-    """String parameters; everything works with none of them set."""
+    """Strings; everything works with no parameter set and no output read."""
 
     route_file: str = text_parameter("Route file (.xodr or .csv) in place of route_id")
     profile_store: str = text_parameter(
         "Folder of learned profiles; empty: environment variable PLDF_PROFILE_STORE",
         name="profile_store",
     )
+    hmi_text: str = since("0.3", text_output("What the instrument cluster says, one sentence"))
 
 
 class DrivingFunction(Instance[PldfState]):
@@ -144,6 +146,10 @@ class DrivingFunction(Instance[PldfState]):
             self.report(
                 level, f"t = {1e-9 * self.record.time_ns:.3f} s: {INPUT_TEXT[self._reported]}"
             )
+
+    def say(self) -> None:
+        """Put the sentence of the instrument cluster together."""
+        self.texts.hmi_text = text_of(self.record)
 
     def finish(self) -> None:
         """Keep the driver's words, learn from the drive and save the profile; called once."""

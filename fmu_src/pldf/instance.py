@@ -37,7 +37,7 @@ class Instance(Generic[RecordT]):
 
     Attributes:
         record: flat record of numbers, its class is the model's table of signals.
-        texts: record of String parameters (a dataclass instance without fields if there are none).
+        texts: record of Strings (a dataclass instance without fields if there are none).
         arrays: every float64 array that belongs to the state; set by ``initialize``.
         messages: what the binding has not yet handed to the user.
         groups: named tuples of arrays that make up ``arrays``; those of one are equally long, those
@@ -63,6 +63,9 @@ class Instance(Generic[RecordT]):
     def step(self, step_s: float) -> None:
         """Advance by one communication step of ``step_s`` > 0 seconds."""
         raise NotImplementedError
+
+    def say(self) -> None:
+        """Bring the String outputs up to date with the record; who has none says nothing."""
 
     def finish(self) -> None:
         """Do what the end of a drive asks for; called once, whatever way the drive ended."""

@@ -11,7 +11,7 @@ import hashlib
 import json
 import struct
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, fields
+from dataclasses import fields
 from functools import cache
 from math import inf
 from typing import Any, Final, NamedTuple, Protocol
@@ -21,6 +21,7 @@ import numpy as np
 from .errors import ModelError
 from .kernel.arrays import FloatArray
 from .kernel.ranges import LAST_NODE, NODES, columns_of, ranges_of
+from .kernel.signals import parameters_of
 
 _HEAD: Final = struct.Struct("<32sqq")
 _TEXT_MAX: Final = 4096  # as PATH_SIZE of the C runtime
@@ -45,7 +46,7 @@ class Snapshot(NamedTuple):
 
     Attributes:
         numbers: of the record, by field.
-        texts: by field.
+        texts: the String parameters, by field.
         arrays: in the order of the model's groups; none before initialization.
     """
 
@@ -56,7 +57,8 @@ class Snapshot(NamedTuple):
 
 def encode(model: Stateful) -> bytes:
     """Return the whole state of ``model``."""
-    texts = json.dumps(asdict(model.texts)).encode()
+    given = {name: getattr(model.texts, name) for name in parameters_of(model.texts)}
+    texts = json.dumps(given).encode()
     lengths = [len(array) for array in model.arrays]
     head = _HEAD.pack(_layout(model), len(texts), len(lengths))
     sizes = struct.pack(f"<{len(lengths)}q", *lengths)
@@ -106,8 +108,12 @@ def _texts(model: Stateful, data: bytes) -> dict[str, str]:
         texts = json.loads(data)
     except (ValueError, RecursionError):
         texts = None
-    names = {field.name for field in fields(model.texts)}
-    if isinstance(texts, dict) and texts.keys() == names and all(map(_is_text, texts.values())):
+    names = parameters_of(model.texts)
+    if (
+        isinstance(texts, dict)
+        and texts.keys() == set(names)
+        and all(map(_is_text, texts.values()))
+    ):
         return texts
     raise ModelError("the texts of this FMU state cannot be used; not restored")
 

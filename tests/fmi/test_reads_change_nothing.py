@@ -136,8 +136,8 @@ MODELS: Final = {
 
 
 def exactly(values: list[Any]) -> list[str]:
-    """Return what tells numbers apart to the bit; NaN equals itself."""
-    return [float(value).hex() for value in values]
+    """Return what tells values apart, numbers to the bit; NaN equals itself."""
+    return [v if isinstance(v, str) else float(v).hex() for v in values]
 
 
 def idle(run: Run, present: Values, data: hs.DataObject, model: Model) -> Iterator[None]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from pldf.kernel.arrays import FloatArray
-from pldf.kernel.hmi import find_turns
+from pldf.kernel.reasons import find_turns
 
 
 def profile(acceleration_mps2: float) -> FloatArray:

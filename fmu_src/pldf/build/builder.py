@@ -6,7 +6,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Set
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module, invalidate_caches, metadata
 from pathlib import Path
 from types import ModuleType
@@ -39,12 +39,14 @@ class Recipe:
         packages: they may import each other by name.
         icon: PNG shown by importers.
         version: shown by importers.
+        resources: further files by their path below ``resources/``.
     """
 
     script: Path
     packages: tuple[Package, ...]
     icon: Path
     version: str
+    resources: Mapping[str, bytes] = field(default_factory=dict)
 
 
 def build(recipe: Recipe, out: Path) -> Path:
@@ -97,6 +99,7 @@ def _extras(recipe: Recipe, slave: ModelSlave) -> dict[str, bytes]:
         "documentation/index.html": page.encode(),
         "documentation/licenses/license.txt": license_of("adaptive-pldf"),
         "documentation/licenses/pythonfmu.txt": license_of("pythonfmu"),
+        **{f"resources/{place}": data for place, data in recipe.resources.items()},
     }
 
 

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Final
 
 from fmpy.validation import validate_fmu  # type: ignore[import-untyped]
 
+from .. import hmi_texts
 from ..build_version import build_version
 from ..cosim.kinds import NATIVE_FOLDER, PARTS_IN_TRAFFIC
 from ..cosim.master import unpacked
@@ -70,7 +72,10 @@ def _recipe(script: Path, *packages: Package) -> Recipe:
 
 
 FMUS: Final = {
-    "AdaptivePLDF": _recipe(HERE / "adaptive_pldf.py", PLDF),
+    "AdaptivePLDF": replace(
+        _recipe(HERE / "adaptive_pldf.py", PLDF),
+        resources={hmi_texts.FILE: hmi_texts.as_json()},
+    ),
     "LeadVehicle": _recipe(MODELS.folder / "lead_vehicle.py", PLDF, MODELS),
     "LongitudinalVehicle": _recipe(MODELS.folder / "longitudinal_vehicle.py", PLDF, MODELS),
     "ScriptedDriver": _recipe(MODELS.folder / "scripted_driver.py", PLDF, MODELS),
@@ -132,6 +137,7 @@ def build_native(name: str, out: Path, targets: Sequence[str], announce: Announc
     elif name == "LeadVehicle":
         resources |= packed_traffic_scripts()
     packed = FMUS[name]
+    resources |= packed.resources
     recipe = archives.NativeRecipe(
         NATIVE[name],
         RUNTIME,

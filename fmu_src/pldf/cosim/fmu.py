@@ -165,7 +165,9 @@ class Slave:
         self.fmu = fmu
         self.messages: list[FmuMessage] = []
         self._set, self.inputs = self._batches(inputs)
-        self._get, self.outputs = self._batches(s.name for s in fmu.named("output"))
+        self._get, self.outputs = self._batches(
+            s.name for s in fmu.named("output") if s.kind != "String"
+        )
         self.name: str = fmu.description.modelName
         from fmpy import fmi2 as fmi
 

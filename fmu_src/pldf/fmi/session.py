@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
-from dataclasses import asdict, fields
 from math import inf, isfinite
 from typing import Any, Final
 
 from ..errors import ModelError
 from ..instance import Instance, require_in_range
-from ..kernel.signals import Signal, variables_of
+from ..kernel.signals import Signal, parameters_of, variables_of
 from .access import Group
 from .phases import Phase, next_phase
 
@@ -100,7 +99,11 @@ class Session:
         return group.read(self.model.record)
 
     def read_texts(self, group: Group) -> list[str]:
-        """Return String values."""
+        """Return String values, up to date."""
+        if group.outputs:
+            if self._stale or not self._ready:
+                self._refresh()
+            self.model.say()
         return group.read(self.model.texts)
 
     def write(self, group: Group, values: list[Any]) -> None:
@@ -162,7 +165,7 @@ class Session:
 
     def _has_parameters_of(self, other: Instance[Any]) -> bool:
         ours = self.model
-        return asdict(ours.texts) == asdict(other.texts) and all(
+        return _texts(ours) == _texts(other) and all(
             getattr(ours.record, s.field) == getattr(other.record, s.field)
             for s in self.signals
             if s.causality == "parameter" and s.kind != "String" and not s.tunable
@@ -193,5 +196,10 @@ def _carry(signals: tuple[Signal, ...], old: Instance[Any], new: Instance[Any]) 
     for signal in signals:
         if signal.causality in ("parameter", "input") and signal.kind != "String":
             setattr(new.record, signal.field, getattr(old.record, signal.field))
-    for field in fields(old.texts):
-        setattr(new.texts, field.name, getattr(old.texts, field.name))
+    for name, text in _texts(old).items():
+        setattr(new.texts, name, text)
+
+
+def _texts(model: Instance[Any]) -> dict[str, str]:
+    """Return the String parameters by field."""
+    return {name: getattr(model.texts, name) for name in parameters_of(model.texts)}

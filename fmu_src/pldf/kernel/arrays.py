@@ -15,7 +15,10 @@ from typing import Annotated, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .ranges import COUNT, EVIDENCE, NODE
+from .codes import REASON
+from .ranges import COUNT, EVIDENCE, NODE, Range
+
+REASON_CODE = Range(0, len(REASON.items) - 1)
 
 # Outside the kernels: a vector of one value per row, metre or person.
 FloatArray = NDArray[np.float64]
@@ -69,6 +72,8 @@ class ProfileArrays(NamedTuple):
     turn_m: Annotated[Floats, NODE]  # node: where the present or next acceleration phase ends
     braking_mps: Floats  # node: highest speed from which braking keeps the hard caps
     braking_by_hand_mps: Floats  # node: the same under a set speed set by hand
+    reason: Annotated[Floats, REASON_CODE]  # node: why the profile is no faster (REASON in codes)
+    aim_m: Annotated[Floats, NODE]  # node: whose speed the profile goes to from here
 
 
 class TraceArrays(NamedTuple):

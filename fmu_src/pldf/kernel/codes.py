@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from .sentences import EVENTS, REASONS
 from .signals import Enumeration
 
 # Modes of the driving function (algorithm, section 2).
@@ -30,7 +31,7 @@ STRETCH_RECORDED: Final = 0
 STRETCH_CONSTANT_SPEED: Final = 1
 STRETCH: Final = Enumeration("Stretch", ("RECORDED", "CONSTANT_SPEED"))
 
-# Why the car drives at this speed.
+# Why the car drives at this speed (``REASONS`` in sentences).
 REASON_LIMIT: Final = 0
 REASON_CURVE: Final = 1
 REASON_COASTING_TO_LIMIT: Final = 2
@@ -44,26 +45,14 @@ REASON_CAP_LEGAL: Final = 9
 REASON_STANDBY: Final = 10
 REASON_FAULT: Final = 11
 REASON_FOLLOWING: Final = 12
-REASON: Final = Enumeration(
-    "Reason",
-    (
-        "LIMIT",
-        "CURVE",
-        "COASTING_TO_LIMIT",
-        "LEARNED_FASTER",
-        "LEARNED_SLOWER",
-        "LEARNED_OFFSET",
-        "MANUAL_SET",
-        "OVERRIDE",
-        "CAP_CURVE",
-        "CAP_LEGAL",
-        "STANDBY",
-        "FAULT",
-        "FOLLOWING",
-    ),
-)
+REASON_OFF: Final = 13
+REASON_SLOWING_DOWN: Final = 14
+REASON_SPEEDING_UP: Final = 15
+REASON_TEMPORARY_LIMIT: Final = 16
+REASON_HELD: Final = 17
+REASON: Final = Enumeration("Reason", tuple(row.name for row in REASONS))
 
-# What just happened, shown for a second.
+# What just happened, shown for a second (``EVENTS`` in sentences).
 EVENT_NONE: Final = 0
 EVENT_LEARNED: Final = 1
 EVENT_FORGOTTEN: Final = 2
@@ -74,21 +63,7 @@ EVENT_PAUSED: Final = 6
 EVENT_RESUMED: Final = 7
 EVENT_NEW_LIMIT: Final = 8
 EVENT_TAKE_OVER: Final = 9
-EVENT: Final = Enumeration(
-    "Event",
-    (
-        "NONE",
-        "LEARNED",
-        "FORGOTTEN",
-        "NOTHING_TO_FORGET",
-        "UNDONE",
-        "NOTHING_TO_UNDO",
-        "PAUSED",
-        "RESUMED",
-        "NEW_LIMIT",
-        "TAKE_OVER",
-    ),
-)
+EVENT: Final = Enumeration("Event", tuple(row.name for row in EVENTS))
 
 # How the cluster speaks.
 LANGUAGE_EN: Final = 0

@@ -12,7 +12,12 @@ from .codes import (
     XY,
 )
 from .following import confirm_restart, look_ahead
-from .hmi import notice_new_limit, reason, show_event
+from .hmi import (
+    confidence_at,
+    notice_new_limit,
+    show_event,
+    update_cluster,
+)
 from .interpolation import place_at, value_at, value_of
 from .lever import (
     CANCEL_CONTACT,
@@ -79,6 +84,7 @@ def drive_step(
         st.ahead_m = max(st.vehicle_speed_mps, 0.0) * step_s
     update_outputs(st, route, profile)
     notice_new_limit(st)
+    update_cluster(st, route, profile)
     note_set_speed(st)
 
 
@@ -168,7 +174,8 @@ def update_outputs(st: PldfState, route: RouteArrays, profile: ProfileArrays) ->
     target = target_of(st, route, profile, s_m, place)
     base = value_of(profile.base_mps, place)
     learned = value_of(profile.learned_mps, place)
-    why = reason(st, route, profile, place)
+    lessons = int(profile.lessons[cell])
+    confidence = confidence_at(st, profile, place)
     turn_m = profile.turn_m[cell]
     settled = value_at(profile.learned_mps, turn_m)
     # All is read before the first is written: the compiler must take any of them for the other.
@@ -182,10 +189,10 @@ def update_outputs(st: PldfState, route: RouteArrays, profile: ProfileArrays) ->
         st.rate_pedal = st.pedal_ns / st.total_ns
         st.rate_set_speed = st.set_speed_ns / st.total_ns
         st.rate_combined = st.combined_ns / st.total_ns
-    st.hmi_reason = why
-    st.hmi_reason_code = why
     st.profile_status_code = st.profile_status
     st.hmi_learned_delta_mps = learned - base
     st.hmi_learning = 1 if learns(st) and may_learn(st) else 0
+    st.hmi_learned_in_drives = lessons
+    st.hmi_confidence = confidence
     st.hmi_next_speed_mps = settled
     st.hmi_next_distance_m = max(turn_m - s_m, 0.0)

@@ -5,15 +5,17 @@ from __future__ import annotations
 from .arrays import Floats, ProfileArrays, RouteArrays, Work
 from .bounds import keep_bounds, mark_violations
 from .codes import OFF, STANDBY
-from .hmi import find_turns
+from .hmi import begin_cluster
 from .last_check import find_braking_curves
 from .planner import find_limit_ends, plan_profile, speed_caps
+from .reasons import find_reasons, find_turns
 from .state import PldfState
 
 
 def start_drive(st: PldfState, route: RouteArrays, profile: ProfileArrays, work: Work) -> None:
     """Begin a drive with the base profile; the arrays of ``route`` are filled, the rest is zero."""
     st.mode = STANDBY if st.main_switch != 0 else OFF
+    begin_cluster(st)
     plan_base(st, route, profile, work)
 
 
@@ -29,6 +31,7 @@ def plan_base(st: PldfState, route: RouteArrays, profile: ProfileArrays, work: W
     find_limit_ends(route.limit_mps, profile.limit_end_m)
     find_braking_curves(st, route, profile, work)
     find_turns(profile.learned_mps, profile.turn_m)
+    find_reasons(st, route, profile)
 
 
 def plan_legal(st: PldfState, route: RouteArrays, speed: Floats, work: Work) -> None:
@@ -50,6 +53,7 @@ def adopt_learned(st: PldfState, route: RouteArrays, profile: ProfileArrays, wor
     mark_violations(st, route, profile.learned_mps, work.b)
     keep_bounds(st, route, profile.learned_mps, profile.bound, work)
     find_turns(profile.learned_mps, profile.turn_m)
+    find_reasons(st, route, profile)
 
 
 def plan(st: PldfState, road: tuple[Floats, Floats, Floats], speed: Floats, work: Work) -> None:

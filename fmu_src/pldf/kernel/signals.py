@@ -124,7 +124,7 @@ def variables_of(record: type[Any] | Any, texts: type[Any] | Any) -> tuple[Signa
 
     Args:
         record: class (or instance) of the numbers.
-        texts: class (or instance) of the String parameters.
+        texts: class (or instance) of the Strings.
     """
     return tuple(by_reference((*signals_of(record), *signals_of(texts))).values())
 
@@ -228,6 +228,16 @@ def tunable(specifier: Any) -> Any:
     Nothing that is prepared once per drive (profiles, what a file is read with) may depend on it.
     """
     return _with(specifier, tunable=True)
+
+
+def text_output(description: str) -> Any:
+    """String output, put together when it is read; the kernel holds what it is made of."""
+    return _spec("output", "String", "", description, held=True)
+
+
+def parameters_of(texts: type[Any] | Any) -> tuple[str, ...]:
+    """Return the fields of a record of Strings that are parameters, in order of definition."""
+    return tuple(s.field for s in signals_of(texts) if s.causality == "parameter")
 
 
 def since(release: str, specifier: Any) -> Any:

@@ -28,6 +28,7 @@ from .ranges import (
     nanoseconds,
     whole,
 )
+from .sentences import EVENT_SENTENCES
 from .signals import (
     choice_output,
     count_output,
@@ -129,13 +130,14 @@ class Outputs:
     profile_status: int = choice_output(
         "What became of the stored profile", PROFILE_STATUS, held=True
     )
-    hmi_reason: int = choice_output("Why the car drives at this speed", REASON)
+    hmi_reason: int = choice_output("Why the car drives at this speed", REASON, held=True)
     hmi_learned_delta_mps: float = real_output("Learned minus base speed here", "m/s")
     hmi_next_speed_mps: float = real_output("Next speed that the profile settles at", "m/s")
     hmi_next_distance_m: float = real_output("Distance to that speed", "m")
     hmi_learning: int = flag_output("This drive is being learned from")
     hmi_reason_code: int = since(
-        "0.3", holds(code(REASON), count_output(f"hmi.reason as a number: {REASON.legend}"))
+        "0.3",
+        holds(code(REASON), count_output(f"hmi.reason as a number: {REASON.legend}", held=True)),
     )
     profile_status_code: int = since(
         "0.3",
@@ -157,6 +159,34 @@ class Outputs:
             code(EVENT),
             count_output(f"What just happened, for a second: {EVENT.legend}", held=True),
         ),
+    )
+    hmi_sentence: int = since(
+        "0.3",
+        holds(
+            whole(0, EVENT_SENTENCES + len(EVENT.items) - 1),
+            count_output(
+                "Which sentence hmi.text says: the code of a reason, or "
+                f"{EVENT_SENTENCES} + the code of an event",
+                held=True,
+            ),
+        ),
+    )
+    hmi_sentence_speed: int = since(
+        "0.3",
+        holds(whole(0, COUNT_MAX), count_output("Speed that it names, in hmi.unit", held=True)),
+    )
+    hmi_sentence_base: int = since(
+        "0.3",
+        holds(
+            whole(0, COUNT_MAX), count_output("Base speed that it names, in hmi.unit", held=True)
+        ),
+    )
+    hmi_sentence_limit: int = since(
+        "0.3",
+        holds(whole(0, COUNT_MAX), count_output("Limit that it names, in hmi.unit", held=True)),
+    )
+    hmi_sentence_drive: int = since(
+        "0.3", holds(whole(0, COUNT_MAX), count_output("Drive that it names", held=True))
     )
     hmi_take_over: int = since(
         "0.3", flag_output("The driver has to brake: following alone may not do", held=True)
@@ -214,6 +244,11 @@ class Memory:
     holds: int = whole(0, COUNT_MAX, at_most=NODES)  # runs of nodes that a bound cut, once learned
     noticed_limit_mps: float = 0.0  # the legal limit at the end of the last step
     event_ns: int = nanoseconds(at_most="time_ns")  # when the event shown began
+    event_untold: int = code(EVENT)  # the newest that no sentence has told yet
+    reason_ns: int = nanoseconds(at_most="time_ns")  # since when the reason is shown
+    reason_speed_mps: float = 0.0  # the speed that its sentence names
+    sentence_ns: int = nanoseconds(at_most="time_ns")  # since when the sentence is shown
+    numbers_ns: int = nanoseconds(at_most="time_ns")  # since when it has its numbers
     # the driver's last word
     teach_was: int = whole(0, 7)  # sum of the switches' codes
     teach_wanted: int = whole(0, WORDS_MAX)  # what the runtime has to answer behind the step

@@ -15,9 +15,10 @@ from ...fmi.phases import Phase
 from ...fmi.session import STEP_MAX_S
 from ...function_words import OLDER_READING
 from ...kernel.arrays import NextArrays, ProfileArrays, TraceArrays
-from ...kernel.codes import BOUND, LOCALIZATION, OUTCOME, PROFILE_STATUS
+from ...kernel.codes import BOUND, LANGUAGE, LOCALIZATION, OUTCOME, PROFILE_STATUS
 from ...kernel.ranges import LAST_NODE, NODES, Range, columns_of, ranges_of
-from ...kernel.signals import Signal, by_reference, time_reference, variables_of
+from ...kernel.sentences import EVENT_SENTENCES, EVENTS, NUMBERS, REASONS
+from ...kernel.signals import Signal, by_reference, parameters_of, time_reference, variables_of
 from ...kernel.units import KMH_PER_MPS
 from ...outcome_words import BOUND_WORDS, HOLDS_TOLD, TEXTS, TRANSITION_MIN_M
 from ...outcomes import SAME_OFFSET_MPS
@@ -40,7 +41,12 @@ _CODES: Final = {
     "PROFILE_STATUS": PROFILE_STATUS,
     "OUTCOME": OUTCOME,
     "BOUND": BOUND,
+    "LANGUAGE": LANGUAGE,
 }
+# Bytes of the longest sentence in UTF-8, with all its numbers and the end.
+SENTENCE_SIZE: Final = 64 * (len(NUMBERS) + 1) + max(
+    len(text.encode()) for row in (*REASONS, *EVENTS) for text in (row.english, row.german)
+)
 # Field of the C struct, field of the record.
 _LEARNING_CELLS: Final = {
     "driver_id": "driver_id",
@@ -62,7 +68,12 @@ def header(model: NativeModel) -> str:
     """Return ``table.h``: the sizes and codes that the compiler must know."""
     sizes = {
         "MODEL_CELLS": len(fields(model.record)),
-        "MODEL_TEXTS": len(fields(model.texts)),
+        "MODEL_TEXTS": len(parameters_of(model.texts)),
+        "REASON_COUNT": len(REASONS),
+        "EVENT_COUNT": len(EVENTS),
+        "EVENT_SENTENCES": EVENT_SENTENCES,
+        "SENTENCE_NUMBERS": len(NUMBERS),
+        "SENTENCE_SIZE": SENTENCE_SIZE,
         "ROUTE_COLUMNS": len(model.route._fields),
         "PROFILE_COLUMNS": len(COLUMNS),
         "COLUMN_BASE": _column_at("base_mps"),
@@ -122,8 +133,17 @@ def source(model: NativeModel, guid: str, token: str) -> str:
     if learning:
         lines += _array("static const Bound bounds", (_references(p, model) for p in model.bounds))
         lines += _struct("static const Learning learning", _learning(model, cells))
+    cluster = "hmi_sentence" in cells
+    if cluster:
+        for name, rows in (("reasons", REASONS), ("events", EVENTS)):
+            lines += _texts(f"static const char *const {name}_en", (r.english for r in rows))
+            lines += _texts(f"static const char *const {name}_de", (r.german for r in rows))
+        lines += _struct("static const Cluster cluster", _cluster(cells))
     tokens = {"guid": _text(guid), "token": _text(token)}
-    pointer = {"learning": "&learning" if learning else "NULL"}
+    pointer = {
+        "learning": "&learning" if learning else "NULL",
+        "cluster": "&cluster" if cluster else "NULL",
+    }
     members = [*tokens.items(), *_members(model, cells), *pointer.items()]
     return "\n".join([*lines, *_struct("const Model model", members), ""])
 
@@ -196,15 +216,22 @@ def _variables(model: NativeModel) -> list[Iterable[str]]:
 
 
 def _variable(signal: Signal, model: NativeModel) -> Iterator[str]:
-    record = model.texts if signal.kind == "String" else model.record
     yield _text(signal.name)
     yield _KINDS[signal.kind]
     yield signal.causality.upper()
     yield str(int(signal.tunable))
-    yield str([f.name for f in fields(record)].index(signal.field))
+    yield str(_place(signal, model))
     low, high = signal.range
     yield _number(low)
     yield _number(high)
+
+
+def _place(signal: Signal, model: NativeModel) -> int:
+    """Return the cell of a number, the index of a String parameter; of a String output 0."""
+    if signal.kind != "String":
+        return [f.name for f in fields(model.record)].index(signal.field)
+    given = parameters_of(model.texts)
+    return given.index(signal.field) if signal.field in given else 0
 
 
 def _references(names: tuple[str, ...], model: NativeModel) -> Iterator[str]:
@@ -213,7 +240,7 @@ def _references(names: tuple[str, ...], model: NativeModel) -> Iterator[str]:
 
 
 def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
-    texts = [f.name for f in fields(model.texts)]
+    texts = parameters_of(model.texts)
     yield "variables", "variables"
     yield "variable_count", str(len(_variables(model)))
     yield "defaults", "defaults"
@@ -241,7 +268,7 @@ def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
 
 
 def _learning(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
-    texts = [f.name for f in fields(model.texts)]
+    texts = parameters_of(model.texts)
     yield "adopt", "model_adopt"
     yield "learn", "model_learn"
     yield "bounds", "bounds"
@@ -256,6 +283,16 @@ def _learning(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]
     yield "learned_column", str(model.first(ProfileArrays, "learned_mps"))
     yield "trace_column", str(model.first(TraceArrays))
     yield "next_column", str(model.first(NextArrays))
+
+
+def _cluster(cells: list[str]) -> Iterator[tuple[str, str]]:
+    yield "reasons", "{reasons_en, reasons_de}"
+    yield "events", "{events_en, events_de}"
+    yield "sentence", str(cells.index("hmi_sentence"))
+    yield "language", str(cells.index("hmi_language"))
+    yield "names", f"{{{', '.join(_text(f'{{{name}}}') for name in NUMBERS)}}}"
+    places = (str(cells.index(f"hmi_sentence_{name}")) for name in NUMBERS)
+    yield "numbers", f"{{{', '.join(places)}}}"
 
 
 def _cell(value: Any) -> str:

@@ -60,7 +60,6 @@ FMI(Status) FMI(DeSerializeFMUstate)(void *c, const FMI(Byte) bytes[], size_t si
 
 /* The i-th variable, in GET and SET. */
 #define CELL(i) s->state.record[model.variables[references[i]].cell]
-#define TEXT(i) s->state.texts[model.variables[references[i]].cell]
 
 #define REFUSED(NAME, ...) \
     FMI(Status) FMI(NAME)(__VA_ARGS__) { return answer(session_unsupported(c, __func__)); }

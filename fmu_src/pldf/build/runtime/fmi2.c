@@ -53,7 +53,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
 GET(Real, KIND_REAL, CELL(i).real)
 GET(Integer, KIND_INTEGER | KIND_ENUMERATION, (fmi2Integer)CELL(i).integer)
 GET(Boolean, KIND_BOOLEAN, (fmi2Boolean)CELL(i).integer)
-GET(String, KIND_STRING, TEXT(i))
+GET(String, KIND_STRING, session_text(s, references[i]))
 SET(Real, KIND_REAL, values[i], CELL(i).real = values[i])
 SET(Integer, KIND_INTEGER | KIND_ENUMERATION, values[i], CELL(i).integer = values[i])
 SET(Boolean, KIND_BOOLEAN, values[i] != fmi2False, CELL(i).integer = values[i] != fmi2False)

@@ -88,7 +88,7 @@ GET(Float64, KIND_REAL | KIND_TIME, is_time(references[i]) ? session_time(s) : C
 GET(Int32, KIND_INTEGER, (fmi3Int32)CELL(i).integer)
 GET(Int64, KIND_ENUMERATION, CELL(i).integer)
 GET(Boolean, KIND_BOOLEAN, CELL(i).integer != 0)
-GET(String, KIND_STRING, TEXT(i))
+GET(String, KIND_STRING, session_text(s, references[i]))
 SET(Float64, KIND_REAL, values[i], CELL(i).real = values[i])
 SET(Int32, KIND_INTEGER, values[i], CELL(i).integer = values[i])
 SET(Int64, KIND_ENUMERATION, (double)values[i], CELL(i).integer = values[i])

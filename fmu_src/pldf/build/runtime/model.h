@@ -50,6 +50,13 @@ typedef struct { /* what only a model that learns has: cells, texts and columns 
     int32_t base_column, learned_column, trace_column, next_column;
 } Learning;
 
+typedef struct { /* what only a model that speaks has: sentences per language, and cells */
+    const char *const *reasons[2], *const *events[2];
+    int32_t sentence, language;
+    const char *names[SENTENCE_NUMBERS]; /* of the numbers, as they stand in a sentence */
+    int32_t numbers[SENTENCE_NUMBERS];
+} Cluster;
+
 typedef struct {
     const char *guid, *token; /* of FMI 2.0, of FMI 3.0 */
     const Variable *variables;
@@ -68,6 +75,7 @@ typedef struct {
     const char *const *watch_texts;
     int32_t watch_count;
     const Learning *learning; /* NULL: it does not learn */
+    const Cluster *cluster;   /* NULL: it does not speak */
 } Model;
 
 extern const Model model;

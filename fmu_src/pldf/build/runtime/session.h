@@ -14,6 +14,7 @@ typedef struct {
     bool finished;
     double stop_time;
     Importer importer;
+    char text[SENTENCE_SIZE]; /* the String output that was read last */
     char name[];
 } Session;
 
@@ -40,6 +41,7 @@ bool session_can_set(Session *s, const uint32_t *references, size_t count, const
                      size_t value_count, int kinds);
 /* Of a tunable parameter; all others are checked before the drive. */
 bool session_allows_value(Session *s, uint32_t reference, double value);
+const char *session_text(Session *s, uint32_t reference); /* parameter or output (cluster.c) */
 bool session_set_text(Session *s, uint32_t reference, const char *text);
 
 /* FMU states; serialized, a checksum follows (state.c) */
