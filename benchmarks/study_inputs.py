@@ -104,6 +104,7 @@ def _signals(fmu: Fmu, values: Mapping[str, float | int | str]) -> str:
         f"{causality[0]}{_LETTERS[s.kind]}{fmu.references[s.name]}"
         for causality in ("input", "output")
         for s in (fmu.named("input") if causality == "input" else fmu.named("output"))
+        if s.kind != "String"
     ]
     words += [
         f"p{_LETTERS[fmu.signals[name].kind]}{fmu.references[name]}={value}"

@@ -59,7 +59,8 @@ def driven(name: str, road: str) -> Session:
 
 def step(session: Session, count: int) -> None:
     """Drive on with inputs that open and close interventions; all outputs are numbers."""
-    outputs = [s.field for s in session.signals if s.causality == "output"]
+    numbers = [s for s in session.signals if s.kind != "String"]
+    outputs = [s.field for s in numbers if s.causality == "output"]
     inputs = {s.field for s in session.signals if s.causality == "input"}
     for k in range(count):
         values = {

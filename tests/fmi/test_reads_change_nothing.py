@@ -36,7 +36,10 @@ class Run:
         self.session.model.texts.route_file = str(route)
         self.access = Access(self.session.signals, NUMBERS)
         self.references = {s.field: i for i, s in by_reference(self.session.signals).items()}
-        self.outputs = [s.field for s in self.session.signals if s.causality == "output"]
+        outputs = [s for s in self.session.signals if s.causality == "output"]
+        self.outputs = [s.field for s in outputs if s.kind != "String"]
+        self.texts = [self.references[s.field] for s in outputs if s.kind == "String"]
+        self.spoken = Access(self.session.signals, frozenset({"String"}))
         self.set(parameters)
 
     def set(self, values: Values) -> None:
@@ -45,8 +48,10 @@ class Run:
         self.session.write(group, list(values.values()))
 
     def read(self) -> list[Any]:
-        """Return all outputs."""
-        return self.session.read(self.access.group([self.references[n] for n in self.outputs]))
+        """Return all outputs, numbers first."""
+        numbers = self.access.group([self.references[n] for n in self.outputs])
+        texts = self.session.read_texts(self.spoken.group(self.texts))
+        return [*self.session.read(numbers), *texts]
 
     def memory(self) -> list[str]:
         """Return all that the model remembers."""

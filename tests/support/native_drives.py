@@ -195,7 +195,8 @@ def by_source(case: Case, script: Table, store: Path) -> Table:
     """Drive in CPython, without FMI; return the results."""
     instance = INSTANCES[case.model]()
     signals = variables_of(instance.record, instance.texts)
-    inputs, outputs = ([s.field for s in signals if s.causality == c] for c in ("input", "output"))
+    numbers = [s for s in signals if s.kind != "String"]
+    inputs, outputs = ([s.field for s in numbers if s.causality == c] for c in ("input", "output"))
     fields = {s.name: s.field for s in signals}
     for name, value in case.settings.items():
         setattr(instance.record, fields[name], value)

@@ -112,8 +112,12 @@ class Unpacked:
         return int(self.description.fmiVersion[0])
 
     def variables(self, causality: str) -> list[ScalarVariable]:
-        """Return those with this causality, in the order of their value references."""
-        return [v for v in self.description.modelVariables if v.causality == causality]
+        """Return those with this causality, in the order of their value references.
+
+        String outputs are left out: results are rows of numbers.
+        """
+        found = [v for v in self.description.modelVariables if v.causality == causality]
+        return [v for v in found if causality != "output" or v.type != "String"]
 
     def library(self, platform: Platform) -> Path:
         """Return the path of the library for ``platform``."""
