@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from consistent_drives import told_in_python, write_straight_road
 from hypothesis import example, given, settings
 from hypothesis import strategies as hs
 from laboratory import function, play, road, travel_times, within
@@ -39,7 +40,11 @@ def pattern(name: str) -> str:
     return re.escape(TEXTS[name]).replace("%d", "-?[0-9]+").replace("%s", WORDS)
 
 
-@pytest.mark.parametrize("name", sorted(TEXTS.keys() - {"MORE"}))  # which has a test of its own
+# Said only where evidence decides.
+OF_EVIDENCE = {name for name in TEXTS if "PENDING" in name or "EVIDENCE" in name or "_BY_" in name}
+
+
+@pytest.mark.parametrize("name", sorted(TEXTS.keys() - OF_EVIDENCE - {"MORE"}))  # it has its own
 def test_the_drive_that_is_compared_has_a_bit_of_everything(
     made: DrivingFunction, name: str
 ) -> None:
@@ -168,3 +173,45 @@ def test_numbers_are_rounded_as_in_c_and_zero_has_no_minus() -> None:
         "3.3",
     ]
     assert [signed(x) for x in (0.0, -0.04, -0.06, 12.34)] == ["+0.0", "+0.0", "-0.1", "+12.3"]
+
+
+@pytest.fixture(scope="module")
+def weighed(tmp_path_factory: pytest.TempPathFactory) -> list[list[str]]:
+    """Return what is said after each of the drives that only learn what is consistent."""
+    folder = tmp_path_factory.mktemp("consistent")
+    return told_in_python(write_straight_road(folder), folder / "store")
+
+
+@pytest.mark.parametrize("name", sorted(OF_EVIDENCE))
+def test_the_drives_in_a_row_have_a_bit_of_everything(weighed: list[list[str]], name: str) -> None:
+    assert any(re.search(pattern(name), line) for lines in weighed for line in lines)
+
+
+def test_a_press_that_waits_is_told_with_its_evidence(weighed: list[list[str]]) -> None:
+    gas = weighed[0][0]
+    assert re.fullmatch(
+        r"pedal intervention 1, 40\d to 60\d m.*: not learned: it waits until it happens again, "
+        r"evidence 1\.3 of 2\.2",
+        gas,
+    )
+    assert "learned from " in weighed[1][0]
+
+
+def test_each_drive_tells_which_places_gained_or_lost_evidence(
+    weighed: list[list[str]],
+) -> None:
+    """In order: gas and brake gain; gas is accepted, brake falls; brake gains, and is dropped."""
+    told = [
+        [line.split(", ")[0] + ":" + line.split(":")[1] for line in lines if " by " in line[:16]]
+        for lines in weighed
+    ]
+    assert told[0] == [
+        "faster by pedal: evidence grew to 1.3 of 2.2",
+        "slower by pedal: evidence grew to 1.3 of 2.2",
+        "faster by lever: evidence grew to 1.3 of 2.2",
+    ]
+    assert "faster by pedal: the wish is accepted" in told[1]
+    assert "slower by pedal: evidence fell to 0.3 of 2.2" in told[1]
+    assert "faster by lever: the wish is accepted" in told[1]
+    assert "slower by pedal: evidence fell to 0, what was waiting there is dropped" in told[2]
+    assert "faster by pedal: what was accepted is put back" in told[3]

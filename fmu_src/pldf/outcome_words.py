@@ -17,17 +17,22 @@ from .kernel.codes import (
     BOUND_LATERAL_ACCEL,
     BOUND_LEGAL_LIMIT,
     BOUND_NONE,
+    EVIDENCE_BY,
+    EVIDENCE_CHANGE,
+    EVIDENCE_GAINED,
+    EVIDENCE_LOST,
     OUTCOME_FOLLOWING,
     OUTCOME_FORGOTTEN,
     OUTCOME_HOLE,
     OUTCOME_LEARNED,
     OUTCOME_NOT_ELIGIBLE,
+    OUTCOME_PENDING,
     OUTCOME_STOP,
     OUTCOME_TAKEN_BACK,
     OUTCOME_UNDONE,
 )
 from .kernel.units import KMH_PER_MPS
-from .outcomes import Hold, Outcomes, PedalOutcome, SetSpeedOutcome
+from .outcomes import Hold, Outcomes, PedalOutcome, Place, SetSpeedOutcome
 from .roads import Mark
 from .roads.marks import ROAD, ROADS, road_words
 
@@ -54,18 +59,29 @@ TEXTS: Final = {
     "FORGOTTEN": NOT_LEARNED + "it began before the place was forgotten",
     "UNDONE": NOT_LEARNED + "the driver took it back",
     "FOLLOWING": NOT_LEARNED + "it happened behind a car that set the speed",
+    "PENDING": NOT_LEARNED + "it waits until it happens again, evidence %s of %s",
     "SET_SPEED": "set speed, %d to %d m%s: ",
     "SET_LEARNED": "%s km/h learned",
     "SET_CUT": "%s km/h learned of the %s km/h set, held by legal limit + tolerance",
     "SET_NOT_ELIGIBLE": "%s km/h not learned: learning was not allowed there",
     "SET_FORGOTTEN": "%s km/h not learned: set before the place was forgotten",
     "SET_UNDONE": "%s km/h not learned: the driver took it back",
+    "SET_PENDING": "%s km/h not learned: it waits until it is set again, evidence %s of %s",
     "SET_TAKEN_BACK": NOT_LEARNED + "taken back at once",
     "PLAN": "plan with the set speed: ",
     "SEPARATOR": "; ",
     "HELD": "held at %d km/h from %d to %d m by %s",
     "HELD_BETWEEN": "held at %d to %d km/h from %d to %d m by %s",
     "MORE": "held at %d more places",
+    "FASTER_BY_PEDALS": "faster by pedal, %d to %d m%s: ",
+    "SLOWER_BY_PEDALS": "slower by pedal, %d to %d m%s: ",
+    "FASTER_BY_LEVER": "faster by lever, %d to %d m%s: ",
+    "SLOWER_BY_LEVER": "slower by lever, %d to %d m%s: ",
+    "EVIDENCE_GAINED": "evidence grew to %s of %s",
+    "EVIDENCE_LOST": "evidence fell to %s of %s",
+    "EVIDENCE_DROPPED": "evidence fell to 0, what was waiting there is dropped",
+    "EVIDENCE_ACCEPTED": "the wish is accepted",
+    "EVIDENCE_PUT_BACK": "what was accepted is put back",
     "ROAD": ROAD,
     "ROADS": ROADS,
 }
@@ -77,9 +93,20 @@ _WHY_NOT: Final = {
     OUTCOME_FOLLOWING: "FOLLOWING",
 }
 
+# How the lines begin.
+LINES: Final = (
+    "PEDAL",
+    "SET_SPEED",
+    "PLAN",
+    "FASTER_BY_PEDALS",
+    "SLOWER_BY_PEDALS",
+    "FASTER_BY_LEVER",
+    "SLOWER_BY_LEVER",
+)
 # Of one intervention, so that its line stays readable.
 HOLDS_TOLD: Final = 10
-# Transitions shorter than this are left out of the words: the bounds trim an edge here and there.
+# Transitions shorter than this are left out of the words: the bounds trim an edge here and there,
+# and no two pedal presses begin at the same metre.
 TRANSITION_MIN_M: Final = 10
 
 
@@ -90,10 +117,27 @@ def lines_of(outcomes: Outcomes, marks: Sequence[Mark] = ()) -> Iterator[str]:
         yield TEXTS["PEDAL"] % (pedal.number, *place) + pedal_words(outcomes, pedal)
     for series in outcomes.set_speeds:
         place = _place(marks, series.from_m, series.to_m)
-        yield TEXTS["SET_SPEED"] % place + set_speed_words(series)
+        yield TEXTS["SET_SPEED"] % place + set_speed_words(outcomes, series)
     told = _first(told_holds(outcomes.plan_holds))
     if told:
         yield TEXTS["PLAN"] + TEXTS["SEPARATOR"].join(told)
+    for changed in outcomes.places:
+        if changed.to_m - changed.from_m >= TRANSITION_MIN_M:
+            place = _place(marks, changed.from_m, changed.to_m)
+            yield TEXTS[_test_of(changed)] % place + place_words(outcomes, changed)
+
+
+def _test_of(place: Place) -> str:
+    """Return the name of the text that says whose evidence it is."""
+    return f"{'FASTER' if place.sign > 0 else 'SLOWER'}_BY_{EVIDENCE_BY.items[place.by]}"
+
+
+def place_words(outcomes: Outcomes, place: Place) -> str:
+    """Return what became of the evidence of a place."""
+    told = TEXTS[f"EVIDENCE_{EVIDENCE_CHANGE.items[place.change]}"]
+    if place.change in (EVIDENCE_GAINED, EVIDENCE_LOST):
+        return told % (tenths(place.evidence), tenths(outcomes.accept))
+    return told
 
 
 def _place(marks: Sequence[Mark], from_m: float, to_m: float) -> tuple[int, int, str]:
@@ -116,10 +160,12 @@ def pedal_words(outcomes: Outcomes, pedal: PedalOutcome) -> str:
         return told + TEXTS["HOLE"] % (tenths(pedal.hole_s), whole(pedal.hole_m))
     if pedal.outcome == OUTCOME_STOP:
         return told + TEXTS["STOP"] % whole(KMH_PER_MPS * outcomes.slowest_mps)
+    if pedal.outcome == OUTCOME_PENDING:
+        return told + TEXTS["PENDING"] % (tenths(pedal.proof), tenths(outcomes.accept))
     return told + TEXTS[_WHY_NOT.get(pedal.outcome, "NOT_MOVED")]
 
 
-def set_speed_words(series: SetSpeedOutcome) -> str:
+def set_speed_words(outcomes: Outcomes, series: SetSpeedOutcome) -> str:
     """Return what became of a series of presses, without its place."""
     offset = signed(KMH_PER_MPS * series.offset_mps)
     wish = signed(KMH_PER_MPS * series.wish_mps)
@@ -127,6 +173,8 @@ def set_speed_words(series: SetSpeedOutcome) -> str:
         return TEXTS["SET_TAKEN_BACK"]
     if series.outcome in _WHY_NOT:
         return TEXTS["SET_" + _WHY_NOT[series.outcome]] % wish
+    if series.outcome == OUTCOME_PENDING:
+        return TEXTS["SET_PENDING"] % (wish, tenths(series.proof), tenths(outcomes.accept))
     told = TEXTS["SET_CUT"] % (offset, wish) if series.is_cut else TEXTS["SET_LEARNED"] % offset
     return told + barred_words(series.barred_m)
 
@@ -152,7 +200,7 @@ def hold_words(hold: Hold) -> str:
 
 def is_outcome(text: str) -> bool:
     """Tell whether a message of an FMU is one of these lines."""
-    starts = (TEXTS[name].partition("%")[0] for name in ("PEDAL", "SET_SPEED", "PLAN"))
+    starts = (TEXTS[name].partition("%")[0] for name in LINES)
     return text.startswith(tuple(starts))
 
 

@@ -47,6 +47,7 @@ class PedalOutcome(NamedTuple):
         learned_from_m, learned_to_m: the first and the last of them.
         mean_change_mps, largest_change_mps: of these nodes, against the profile driven.
         hole_s, hole_m: time and length of the holes that touch it.
+        proof: evidence that it has got, while it waits for more.
         barred_m: how much of it, stretched, lies where learning was not allowed.
         holds: bounds that cut its lesson.
     """
@@ -63,6 +64,7 @@ class PedalOutcome(NamedTuple):
     largest_change_mps: float
     hole_s: float
     hole_m: float
+    proof: float
     barred_m: float
     holds: tuple[Hold, ...]
 
@@ -75,6 +77,7 @@ class SetSpeedOutcome(NamedTuple):
         wish_mps: offset from the legal limit that the driver set.
         offset_mps: what was adopted of it.
         outcome: OUTCOME in ``kernel.codes``.
+        proof: evidence that it has got, while it waits for more.
         barred_m: how much of it lies where learning was not allowed, which takes no offset.
     """
 
@@ -83,6 +86,7 @@ class SetSpeedOutcome(NamedTuple):
     wish_mps: float
     offset_mps: float
     outcome: int
+    proof: float
     barred_m: float
 
     @property
@@ -90,6 +94,25 @@ class SetSpeedOutcome(NamedTuple):
         """Tell whether the tolerance above the legal limit allowed less than was set."""
         learned = self.outcome == OUTCOME_LEARNED
         return learned and self.offset_mps < self.wish_mps - SAME_OFFSET_MPS
+
+
+class Place(NamedTuple):
+    """A run of nodes, or cells, whose evidence changed in the same way (section 6).
+
+    Attributes:
+        by: EVIDENCE_BY in ``kernel.codes``.
+        sign: 1 for going faster, -1 for slower.
+        change: EVIDENCE_CHANGE in ``kernel.codes``.
+        from_m, to_m: its first and last node.
+        evidence: the highest there after the drive.
+    """
+
+    by: int
+    sign: int
+    change: int
+    from_m: float
+    to_m: float
+    evidence: float
 
 
 class Outcomes(NamedTuple):
@@ -100,12 +123,16 @@ class Outcomes(NamedTuple):
         set_speeds: in the order of the drive.
         plan_holds: bounds that cut the plan with the learned set speeds.
         slowest_mps: below this speed the car stops, which is no wish.
+        places: whose evidence changed, with learn = CONSISTENT.
+        accept: evidence from which an intervention is learned.
     """
 
     pedals: tuple[PedalOutcome, ...]
     set_speeds: tuple[SetSpeedOutcome, ...]
     plan_holds: tuple[Hold, ...]
     slowest_mps: float
+    places: tuple[Place, ...]
+    accept: float
 
 
 def outcomes_of(st: PldfState, trace: TraceArrays, following: NextArrays) -> Outcomes:
@@ -120,7 +147,25 @@ def outcomes_of(st: PldfState, trace: TraceArrays, following: NextArrays) -> Out
         for k in range(st.drive_interventions)
     )
     series = (_set_speed(following, k) for k in range(st.set_series))
-    return Outcomes(tuple(pedals), tuple(series), tuple(held.get(0, ())), st.learning_speed_min_mps)
+    return Outcomes(
+        pedals=tuple(pedals),
+        set_speeds=tuple(series),
+        plan_holds=tuple(held.get(0, ())),
+        slowest_mps=st.learning_speed_min_mps,
+        places=tuple(_place(following, k) for k in range(st.evidence_places)),
+        accept=st.learning_evidence_accept,
+    )
+
+
+def _place(following: NextArrays, k: int) -> Place:
+    return Place(
+        int(following.place_by[k]),
+        int(following.place_sign[k]),
+        int(following.place_change[k]),
+        following.place_from_m[k],
+        following.place_to_m[k],
+        following.place_evidence[k],
+    )
 
 
 def _hold(following: NextArrays, k: int) -> Hold:
@@ -149,6 +194,7 @@ def _pedal(
         largest_change_mps=following.largest_change_mps[k],
         hole_s=following.hole_s[k],
         hole_m=following.hole_m[k],
+        proof=following.proof[k],
         barred_m=following.barred_m[k],
         holds=holds,
     )
@@ -161,6 +207,7 @@ def _set_speed(following: NextArrays, k: int) -> SetSpeedOutcome:
         following.set_wish_mps[k],
         following.set_offset_mps[k],
         int(following.set_outcome[k]),
+        following.set_proof[k],
         following.set_barred_m[k],
     )
 

@@ -17,11 +17,12 @@ import pytest
 from laboratory import STEP_S
 from numpy.typing import NDArray
 from pldf.compiled import KERNEL_MODULES, compile_modules, kernel, pack, unpack
+from pldf.function import LEARNED
 from pldf.instance import view, views, zeros
 from pldf.kernel import replay as replay_module
 from pldf.kernel import substeps
 from pldf.kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
-from pldf.kernel.codes import INPUT_OK, XY
+from pldf.kernel.codes import INPUT_OK, LEARN_CONSISTENT, LEARN_FAITHFUL, XY
 from pldf.kernel.replay import Samples
 from pldf.kernel.state import PldfState
 from pldf.roads import packed_route, route_arrays
@@ -112,10 +113,13 @@ class Bench:
     def learn(self) -> None:
         """Learn, and take over what was learned, under a harder bound: so the bounds cut it."""
         given = (self.st, self.route, self.profile, self.trace, self.work, self.following)
-        self.functions["learn_drive"](*given)
-        for name in ("learned_mps", "offset_mps", "drive", "intervention", "lessons", "bound"):
-            following = np.asarray(getattr(self.following, name))
-            np.asarray(getattr(self.profile, name))[:] = following
+        # The same drive, three times: evidence waits, then accepts; then all is learned at once.
+        for learn in (LEARN_CONSISTENT, LEARN_CONSISTENT, LEARN_FAITHFUL):
+            self.st.learn = learn
+            self.functions["learn_drive"](*given)
+            for name in LEARNED:
+                following = np.asarray(getattr(self.following, name))
+                np.asarray(getattr(self.profile, name))[:] = following
         taught = (self.following.drive, self.following.offset_mps)
         self.taught = [np.count_nonzero(column) for column in taught]
         self.st.learning_lateral_accel_max_mps2 = 2.4

@@ -82,6 +82,7 @@ class TraceArrays(NamedTuple):
     time_s: Floats  # node: time of first arrival
     speed_mps: Floats  # node: recorded speed; the minimum where the car stood
     eligible: Floats  # node: 1 = learning was allowed, 0 = it was not, or not driven
+    active: Floats  # node: 1 = the function drove (mode ACTIVE)
     gap: Floats  # node: 1 = interpolated over a hole in the recording
     set_speed_mps: Floats  # node: manual set speed in force, 0 = none
     set_barred: Floats  # node: 0, or why no set speed of before is learned (OUTCOME in codes)
@@ -143,7 +144,9 @@ class NextArrays(NamedTuple):
     largest_change_mps: Floats  # pedal intervention k: the same; with its sign
     hole_s: Floats  # pedal intervention k: time of the holes that cost it
     hole_m: Floats  # pedal intervention k: length of the holes that cost it
+    proof: Floats  # pedal intervention k: evidence of what waits for more (section 6)
     barred_m: Floats  # pedal intervention k: how much of it lies where learning was not allowed
+    set_proof: Floats  # series k: the same of its offset
     set_barred_m: Floats  # series k: how much of it lies where learning was not allowed
     hold_bound: Floats  # hold k, a run of nodes cut by one bound: which (BOUND in codes)
     hold_intervention: Floats  # hold k: of which intervention's lesson, 0 = set speed
@@ -151,3 +154,9 @@ class NextArrays(NamedTuple):
     hold_to_m: Floats  # hold k: its last node
     hold_low_mps: Floats  # hold k: lowest speed of the learned profile there
     hold_high_mps: Floats  # hold k: highest speed of the learned profile there
+    place_by: Floats  # place k whose evidence changed: by pedals or lever (EVIDENCE_BY in codes)
+    place_sign: Floats  # place k: 1 = for going faster, -1 = slower
+    place_change: Floats  # place k: what became of it (EVIDENCE_CHANGE in codes)
+    place_from_m: Floats  # place k: its first node
+    place_to_m: Floats  # place k: its last node
+    place_evidence: Floats  # place k: its highest evidence after the drive

@@ -94,6 +94,7 @@ OUTCOME_TAKEN_BACK: Final = 5  # a series of presses that ended where it had beg
 OUTCOME_FORGOTTEN: Final = 6  # it began before the driver pressed "forget here", and overlaps that
 OUTCOME_UNDONE: Final = 7  # the driver pressed "undo" behind it
 OUTCOME_FOLLOWING: Final = 8  # a lead car limited during it
+OUTCOME_PENDING: Final = 9  # it waits for more evidence (section 6)
 OUTCOME: Final = Enumeration(
     "Outcome",
     (
@@ -106,6 +107,7 @@ OUTCOME: Final = Enumeration(
         "FORGOTTEN",
         "UNDONE",
         "FOLLOWING",
+        "PENDING",
     ),
 )
 
@@ -113,6 +115,20 @@ OUTCOME: Final = Enumeration(
 WORD_FORGET: Final = 1
 WORD_UNDO: Final = 2
 WORDS_MAX: Final = 3  # both at once
+
+# What became of the evidence of a place in a drive (section 6), and whose it is.
+EVIDENCE_SAME: Final = 0
+EVIDENCE_GAINED: Final = 1
+EVIDENCE_LOST: Final = 2
+EVIDENCE_DROPPED: Final = 3  # and with it what was pending
+EVIDENCE_ACCEPTED: Final = 4
+EVIDENCE_PUT_BACK: Final = 5  # what had been accepted
+EVIDENCE_CHANGE: Final = Enumeration(
+    "EvidenceChange", ("SAME", "GAINED", "LOST", "DROPPED", "ACCEPTED", "PUT_BACK")
+)
+BY_PEDALS: Final = 0
+BY_LEVER: Final = 1
+EVIDENCE_BY: Final = Enumeration("EvidenceBy", ("PEDALS", "LEVER"))
 
 # What became of the stored profile.
 PROFILE_BASE: Final = 0

@@ -56,7 +56,7 @@ def forget_here(
     keep_evidence(profile, following)
     _forget_limit(st, route, profile, work, following, limit)
     _forget_piece(st, following, piece)
-    bound_segments(st, route, work, following, st.profile_iteration + 1.0)
+    bound_segments(st, route, work, following)
     _bar_forgotten(st, trace, piece, limit)
     _bar_changed(st, profile, trace, following, OUTCOME_FORGOTTEN)
     _put_in_force(st, route, profile, work, following)
@@ -120,7 +120,7 @@ def _forget_limit(
         clear_evidence(following, i)
     if had_offset:
         plan_with_offsets(st, route, profile, work, following)
-        carry_learned(st, route, profile, following, st.profile_iteration + 1.0)
+        carry_learned(st, route, profile, following)
 
 
 def _forget_piece(st: PldfState, following: NextArrays, piece: Ends) -> None:

@@ -1,6 +1,7 @@
 """SPAA: from the trace of a drive to the profile of the next one (section 3).
 
-Order: set speed, plan anew, stretch pedal interventions, segments, mean, smoothing, bounds.
+Order: set speed, plan anew, stretch pedal interventions, segments, mean, smoothing, bounds. Where
+only what is consistent is learned (section 6), evidence decides between segments and mean.
 """
 
 from __future__ import annotations
@@ -9,12 +10,16 @@ from .arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from .bounds import hard_cap, keep_bounds
 from .codes import BOUND_NONE, OUTCOME_LEARNED
 from .evidence import keep_evidence
+from .evidence_places import find_places
+from .lever_evidence import drop_offset_evidence, recognize_offsets, weigh_offsets
 from .lowering import UNMARKED
-from .offsets import adopt_offsets
+from .offsets import Drive, adopt_offsets
 from .outcomes import tell_outcomes
+from .pedal_evidence import accept_pedals, drop_evidence, recognize_lessons, weigh_pedals
 from .pieces import insert_pieces
 from .preparation import plan
-from .segments import learn_segments
+from .recorder import learns_consistent
+from .segments import average, find_segments, learn_segments
 from .state import PldfState
 
 SAME_PLAN_MPS = 1e-9  # plans nearer than this are the same plan, rounded differently
@@ -37,15 +42,46 @@ def learn_drive(
     keep_evidence(profile, following)
     if st.nodes < 2:
         return
-    drive = st.profile_iteration + 1.0
-    adopt_offsets(st, (route, profile, trace, following))
-    if _adopted(st, following):
-        plan_with_offsets(st, route, profile, work, following)
-        carry_learned(st, route, profile, following, drive)
+    lever = (route, profile, trace, following, work.h)
+    adopt_offsets(st, lever)
+    _follow_offsets(st, route, profile, work, following)
     insert_pieces(st, route, trace, work, following.outcome)
-    learn_segments(st, trace, work, following)
-    bound_segments(st, route, work, following, drive)
+    find_segments(st, trace, work, following)
+    if learns_consistent(st):
+        _weigh(st, lever, work)
+    else:
+        st.evidence_places = 0
+        average(st, work)
+        drop_evidence(work, following)
+        drop_offset_evidence(lever)
+    learn_segments(st, work, following)
+    bound_segments(st, route, work, following)
     tell_outcomes(st, route, profile, trace, following)
+    if learns_consistent(st):
+        find_places(st, profile, following)
+
+
+def _weigh(st: PldfState, lever: Drive, work: Work) -> None:
+    """Let evidence decide what is learned (section 6).
+
+    The pedals are judged against the plan with every offset set in this drive, whether it is
+    adopted or has to wait: else the lever's wish would count as the pedals', too.
+    """
+    route, profile, trace, following, _ = lever
+    recognize_lessons(st, profile, following)
+    recognize_offsets(st, profile, following)
+    weigh_pedals(st, trace, work, following)
+    weigh_offsets(st, lever)
+    if st.set_series > 0:
+        for i in range(len(profile.learned_mps)):
+            following.planned_mps[i] = profile.planned_mps[i]
+            following.learned_mps[i] = profile.learned_mps[i]
+            following.drive[i] = profile.drive[i]
+            following.intervention[i] = profile.intervention[i]
+        _follow_offsets(st, route, profile, work, following)
+        for i in range(len(work.c)):
+            work.c[i] = following.learned_mps[i]
+    accept_pedals(st, work, following)
 
 
 def copy_profile(profile: ProfileArrays, following: NextArrays) -> None:
@@ -65,6 +101,19 @@ def _adopted(st: PldfState, following: NextArrays) -> bool:
     for k in range(st.set_series):
         adopted = adopted or following.set_outcome[k] == OUTCOME_LEARNED
     return adopted
+
+
+def _follow_offsets(
+    st: PldfState,
+    route: RouteArrays,
+    profile: ProfileArrays,
+    work: Work,
+    following: NextArrays,
+) -> None:
+    """Plan anew with the offsets that were adopted, if any were."""
+    if _adopted(st, following):
+        plan_with_offsets(st, route, profile, work, following)
+        carry_learned(st, route, profile, following)
 
 
 def plan_with_offsets(
@@ -88,7 +137,6 @@ def carry_learned(
     route: RouteArrays,
     profile: ProfileArrays,
     following: NextArrays,
-    drive: float,
 ) -> None:
     """Where the plan changed, put what the pedals taught on top of the new plan (decision).
 
@@ -101,14 +149,13 @@ def carry_learned(
             slowest = min(following.planned_mps[i], st.learning_speed_min_mps)
             carried = max(following.planned_mps[i] + taught, slowest)
             following.learned_mps[i] = min(carried, hard_cap(st, route, i))
-            following.drive[i] = drive
+            following.drive[i] = st.profile_iteration + 1.0
             following.intervention[i] = 0.0
 
 
-def bound_segments(
-    st: PldfState, route: RouteArrays, work: Work, following: NextArrays, drive: float
-) -> None:
+def bound_segments(st: PldfState, route: RouteArrays, work: Work, following: NextArrays) -> None:
     """Keep the bounds, once, on all that this drive changed; what that lowers around it joins."""
+    drive = st.profile_iteration + 1.0
     for i in range(len(work.b)):
         work.b[i] = UNMARKED
         if following.drive[i] == drive:

@@ -8,12 +8,13 @@ begins or ends is no sign and no press.
 
 from __future__ import annotations
 
-from .arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays
+from .arrays import Floats, NextArrays, ProfileArrays, RouteArrays, TraceArrays
 from .codes import OUTCOME_LEARNED, OUTCOME_NOT_ELIGIBLE, OUTCOME_TAKEN_BACK
 from .state import PldfState
 
-# What the offsets of a drive are read from, and where they go.
-Drive = tuple[RouteArrays, ProfileArrays, TraceArrays, NextArrays]
+# What the offsets of a drive are read from, and where they go; at last, per cell, the number of
+# the series of presses that counts there, 0 = none.
+Drive = tuple[RouteArrays, ProfileArrays, TraceArrays, NextArrays, Floats]
 
 
 def adopt_offsets(st: PldfState, drive: Drive) -> None:
@@ -21,17 +22,27 @@ def adopt_offsets(st: PldfState, drive: Drive) -> None:
 
     What became of each series is written beside, their number into ``st.set_series``.
     """
+    following, series = drive[3], drive[4]
+    for cell in range(len(series)):
+        series[cell] = 0.0
+    _find_series(st, drive)
+    for cell in range(len(series)):
+        if series[cell] > 0.0:
+            following.offset_mps[cell] = following.set_offset_mps[int(series[cell]) - 1]
+
+
+def _find_series(st: PldfState, drive: Drive) -> None:
     route = drive[0]
     st.set_series = 0
     last = st.first_node + st.nodes - 1
     node = st.first_node
     while node <= last:
-        end = _end_of_limit(route, node, last)
+        end = end_of_limit(route, node, last)
         _adopt_in_limit(st, drive, node, end)
         node = end + 1
 
 
-def _end_of_limit(route: RouteArrays, node: int, last: int) -> int:
+def end_of_limit(route: RouteArrays, node: int, last: int) -> int:
     """Return the last node, at most ``last``, up to which the limit at ``node`` holds."""
     end = node
     while end < last and route.limit_mps[end + 1] == route.limit_mps[node]:
@@ -41,7 +52,7 @@ def _end_of_limit(route: RouteArrays, node: int, last: int) -> int:
 
 def _adopt_in_limit(st: PldfState, drive: Drive, first: int, last: int) -> None:
     """Adopt the series of the nodes ``first`` to ``last``, all under one limit."""
-    _, _, trace, following = drive
+    trace, following = drive[2], drive[3]
     before = 0.0  # the manual set speed in force before the series, 0 = none
     node = _next_press(st, trace, first, last, before)
     while node <= last:
@@ -95,13 +106,13 @@ def _adopt_series(st: PldfState, drive: Drive, node: int, end: int, last: int) -
 
     Beyond the last recorded node the driver has not ended it: it holds to the end of its limit.
     """
-    route, _, trace, following = drive
+    route, _, trace, following, series = drive
     nodes = len(route.limit_mps)
     wish = trace.set_speed_mps[end] - route.limit_mps[node]
     value = min(wish, st.learning_over_limit_max_mps)
     first = _first_cell(st, drive, node)
     if end == st.first_node + st.nodes - 1:
-        end = _end_of_limit(route, end, nodes - 1)
+        end = end_of_limit(route, end, nodes - 1)
     ends_m = (float(first), min(end + 1.0, nodes - 1.0))
     place = _place_of(st, trace, node)
     if trace.set_barred[place] > 0.0:
@@ -112,7 +123,7 @@ def _adopt_series(st: PldfState, drive: Drive, node: int, end: int, last: int) -
         _note(st, following, ends_m, (wish, value), OUTCOME_LEARNED)
         for cell in range(first, end + 1):
             if cell > last or trace.eligible[cell] > 0.0:
-                following.offset_mps[cell] = value
+                series[cell] = float(st.set_series)
 
 
 def _note(
@@ -144,7 +155,7 @@ def _first_cell(st: PldfState, drive: Drive, node: int) -> int:
     If the lever was moved soon after the sign, or before the car had settled at the new speed, the
     driver meant the whole limit. A limit whose beginning was not recorded has no sign.
     """
-    route, profile, trace, _ = drive
+    route, profile, trace, _, _ = drive
     sign = node
     while sign > 0 and route.limit_mps[sign - 1] == route.limit_mps[node]:
         sign -= 1

@@ -8,7 +8,7 @@ communication point: position, speed and pedals together with mode and set speed
 from __future__ import annotations
 
 from .arrays import RouteArrays, TraceArrays
-from .codes import ACTIVE, GAS_OVERRIDE, LEARN_OFF, OUTCOME_FOLLOWING, STANDBY
+from .codes import ACTIVE, GAS_OVERRIDE, LEARN_CONSISTENT, LEARN_OFF, OUTCOME_FOLLOWING, STANDBY
 from .interpolation import cell_at
 from .state import PldfState
 
@@ -36,6 +36,11 @@ def record_sample(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None
 def learns(st: PldfState) -> bool:
     """Whether this drive is learned from when it ends."""
     return st.learn != LEARN_OFF or st.learn_faithful != 0 or st.learn_consistent != 0
+
+
+def learns_consistent(st: PldfState) -> bool:
+    """Tell whether this drive is learned from as CONSISTENT says: it wins over FAITHFUL."""
+    return st.learn == LEARN_CONSISTENT or st.learn_consistent != 0
 
 
 def may_learn(st: PldfState) -> bool:
@@ -183,6 +188,7 @@ def _write_nodes(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None:
         trace.speed_mps[i] = speed
         trace.time_s[i] = st.from_time_s + part * (st.knot_time_s - st.from_time_s)
         trace.eligible[i] = 1.0 if may_learn(st) else 0.0
+        trace.active[i] = 1.0 if st.mode == ACTIVE else 0.0
         trace.gap[i] = 1.0 if hole else 0.0
         trace.set_speed_mps[i] = _set_speed_for(st, route, i)
 

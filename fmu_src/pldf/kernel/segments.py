@@ -1,4 +1,9 @@
-"""Which runs of a drive are learned, and what they become (section 3.4 to 3.6)."""
+"""Which runs of a drive are learned, and what they become (section 3.4 to 3.6).
+
+``work`` holds, per node: a = speed wished; b = marks of the pieces; c = the profile before the
+pedals' lessons; d = scratch; e = of which intervention's run the node is, 0 = of none; f =
+AS_PLANNED where nothing is smoothed; g = mean of wish and profile.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +13,23 @@ from .pieces import NOT_LEARNED
 from .smoothing import smoothed_at
 from .state import PldfState
 
+IN_STOP = -1.0  # of a run in which the car stopped
+AS_PLANNED = 3.0  # in ``work.f``: the plan comes back as it is, not smoothed
 
-def learn_segments(st: PldfState, trace: TraceArrays, work: Work, following: NextArrays) -> None:
-    """Find each run that the driver caused, by marks and speeds in ``work``, and learn it."""
+
+def find_segments(st: PldfState, trace: TraceArrays, work: Work, following: NextArrays) -> None:
+    """Find each run that the driver caused, by marks and speeds in ``work``, and number its nodes.
+
+    The numbers go into ``work.e``; ``work.c`` gets the profile that deviations are judged against.
+    """
     end = st.first_node + st.nodes
     i = st.first_node
     # Deviations are judged against the profile before any segment of this drive is learned, and
     # smoothing is padded with it: so the order of the segments does not matter.
     for j in range(len(work.c)):
         work.c[j] = following.learned_mps[j]
+        work.e[j] = 0.0
+        work.f[j] = 0.0
     while i < end:
         if not _is_wish(st, work, i):
             i += 1
@@ -24,6 +37,26 @@ def learn_segments(st: PldfState, trace: TraceArrays, work: Work, following: Nex
         last = _end_of_segment(st, trace, work, i, end)
         if _was_caused_by_driver(work, i, last):
             _judge_segment(st, trace, work, following, (i, last))
+        i = last + 1
+
+
+def average(st: PldfState, work: Work) -> None:
+    """Eq. (3): fill ``work.g`` with the mean of wish and profile in all runs found."""
+    for i in range(len(work.a)):
+        if work.e[i] > 0.0:
+            work.g[i] = work.c[i] + st.learning_weight * (work.a[i] - work.c[i])
+
+
+def learn_segments(st: PldfState, work: Work, following: NextArrays) -> None:
+    """Learn the means in ``work.g`` on each run of nodes that ``work.e`` numbers."""
+    n = len(work.e)
+    i = 0
+    while i < n:
+        last = i
+        while last < n and work.e[last] > 0.0:
+            last += 1
+        if last > i:
+            _learn_segment(st, work, following, i, last - 1)
         i = last + 1
 
 
@@ -60,7 +93,7 @@ def _was_caused_by_driver(work: Work, first: int, last: int) -> bool:
 def _judge_segment(
     st: PldfState, trace: TraceArrays, work: Work, following: NextArrays, ends: tuple[int, int]
 ) -> None:
-    """Learn the nodes between ``ends``, both included, unless the car stopped among them.
+    """Take the nodes between ``ends``, both included, unless the car stopped among them.
 
     Half a stop learned would accelerate into the place, so its run is not learned at all.
     """
@@ -73,30 +106,37 @@ def _judge_segment(
         k = int(work.b[i]) - 1
         if k >= 0 and following.outcome[k] != OUTCOME_LEARNED:
             following.outcome[k] = OUTCOME_STOP if stop else OUTCOME_LEARNED
-    if not stop:
-        _learn_segment(st, work, following, ends[0], ends[1])
+    _number_nodes(work, ends, stop)
+
+
+def _number_nodes(work: Work, ends: tuple[int, int], stop: bool) -> None:
+    """Write into ``work.e`` to which intervention each node between ``ends`` belongs.
+
+    Nodes before the first intervention belong to it, nodes behind one to the one just ended.
+    """
+    number = 0.0
+    for i in range(ends[1], ends[0] - 1, -1):
+        number = work.b[i] if work.b[i] > 0.0 else number
+    for i in range(ends[0], ends[1] + 1):
+        number = work.b[i] if work.b[i] > 0.0 else number
+        work.e[i] = IN_STOP if stop else number
 
 
 def _learn_segment(st: PldfState, work: Work, following: NextArrays, first: int, last: int) -> None:
-    """Eq. (3) and smoothing on the nodes first..last, cross-faded to the unchanged profile."""
+    """Smooth the nodes first..last and cross-fade them to the unchanged profile."""
     half = int(0.5 * (st.learning_smoothing_window_m - 1))
     n = len(work.a)
     for i in range(max(first - half, 0), min(last + half, n - 1) + 1):
         work.d[i] = work.c[i]
     for i in range(first, last + 1):
-        driven = work.c[i]
-        work.d[i] = driven + st.learning_weight * (work.a[i] - driven)
-    # Nodes before the first intervention belong to it, nodes behind one to the one just ended.
-    number = 0.0
-    for i in range(last, first - 1, -1):
-        number = work.b[i] if work.b[i] > 0.0 else number
+        work.d[i] = work.g[i]
     for i in range(first, last + 1):
         share = _share(st, n, i, (first, last))
         driven = work.c[i]
-        following.learned_mps[i] = driven + share * (smoothed_at(work.d, i, half) - driven)
-        number = work.b[i] if work.b[i] > 0.0 else number
+        wished = work.g[i] if work.f[i] == AS_PLANNED else smoothed_at(work.d, i, half)
+        following.learned_mps[i] = driven + share * (wished - driven)
         following.drive[i] = st.profile_iteration + 1.0
-        following.intervention[i] = number
+        following.intervention[i] = work.e[i]
         following.lessons[i] += 1.0
 
 

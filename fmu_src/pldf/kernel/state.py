@@ -242,6 +242,7 @@ class Memory:
     gap_uncovered_ns: int = nanoseconds()
     set_series: int = whole(0, COUNT_MAX, at_most=NODES)  # of presses of the lever, once learned
     holds: int = whole(0, COUNT_MAX, at_most=NODES)  # runs of nodes that a bound cut, once learned
+    evidence_places: int = whole(0, COUNT_MAX, at_most=NODES)  # whose evidence changed, the same
     noticed_limit_mps: float = 0.0  # the legal limit at the end of the last step
     event_ns: int = nanoseconds(at_most="time_ns")  # when the event shown began
     event_untold: int = code(EVENT)  # the newest that no sentence has told yet

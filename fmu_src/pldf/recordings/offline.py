@@ -16,6 +16,8 @@ from ..kernel.arrays import FloatArray
 from ..kernel.codes import (
     BOUND,
     BOUND_LEGAL_LIMIT,
+    EVIDENCE_BY,
+    EVIDENCE_CHANGE,
     OUTCOME,
     OUTCOME_HOLE,
     OUTCOME_LEARNED,
@@ -23,8 +25,8 @@ from ..kernel.codes import (
 from ..kernel.replay import Samples, replay
 from ..kernel.stretch import stretch_factor, stretched_position
 from ..kernel.units import KMH_PER_MPS
-from ..outcome_words import NOT_LEARNED, TEXTS, pedal_words, set_speed_words
-from ..outcomes import Hold, Outcomes, PedalOutcome, SetSpeedOutcome, equal_runs
+from ..outcome_words import NOT_LEARNED, TEXTS, pedal_words, place_words, set_speed_words
+from ..outcomes import Hold, Outcomes, PedalOutcome, Place, SetSpeedOutcome, equal_runs
 from ..profiles.older_reading import is_older_reading
 from ..profiles.store import Iteration, StoredProfile
 from ..roads import Route, fingerprint
@@ -150,6 +152,7 @@ def explain(learned: Learned) -> dict[str, Any]:
 
     ``interventions`` are those by pedal, ``set_speeds`` the series of presses of the lever. Each
     has its ``outcome`` and the same ``told`` in words. ``held`` says where which bound cut it.
+    ``evidence`` lists the places that gained or lost some, with learn = CONSISTENT.
     """
     st = learned.function.record
     outcomes = learned.function.outcomes()
@@ -161,9 +164,10 @@ def explain(learned: Learned) -> dict[str, Any]:
             "combined": st.combined_ns / st.total_ns,
         },
         "interventions": [_explain_pedal(learned, outcomes, pedal) for pedal in outcomes.pedals],
-        "set_speeds": [_explain_set_speed(series) for series in outcomes.set_speeds],
+        "set_speeds": [_explain_set_speed(outcomes, series) for series in outcomes.set_speeds],
         "segments": _segments(learned),
         "offsets": _offsets(learned),
+        "evidence": [_explain_place(outcomes, place) for place in outcomes.places],
         "plan_held": [_explain_hold(hold) for hold in outcomes.plan_holds],
     }
 
@@ -200,7 +204,7 @@ def _explain_pedal(learned: Learned, outcomes: Outcomes, pedal: PedalOutcome) ->
     return entry
 
 
-def _explain_set_speed(series: SetSpeedOutcome) -> dict[str, Any]:
+def _explain_set_speed(outcomes: Outcomes, series: SetSpeedOutcome) -> dict[str, Any]:
     return {
         "from_m": series.from_m,
         "to_m": series.to_m,
@@ -208,8 +212,18 @@ def _explain_set_speed(series: SetSpeedOutcome) -> dict[str, Any]:
         "offset_mps": series.offset_mps,
         "barred_m": series.barred_m,
         "outcome": OUTCOME.items[series.outcome].lower(),
-        "told": set_speed_words(series),
+        "told": set_speed_words(outcomes, series),
         "held_by": BOUND.items[BOUND_LEGAL_LIMIT].lower() if series.is_cut else None,
+    }
+
+
+def _explain_place(outcomes: Outcomes, place: Place) -> dict[str, Any]:
+    return {
+        **place._asdict(),
+        "by": EVIDENCE_BY.items[place.by].lower(),
+        "sign": "faster" if place.sign > 0 else "slower",
+        "change": EVIDENCE_CHANGE.items[place.change].lower(),
+        "told": place_words(outcomes, place),
     }
 
 

@@ -15,7 +15,15 @@ from ...fmi.phases import Phase
 from ...fmi.session import STEP_MAX_S
 from ...function_words import OLDER_READING
 from ...kernel.arrays import NextArrays, ProfileArrays, TraceArrays
-from ...kernel.codes import BOUND, LANGUAGE, LOCALIZATION, OUTCOME, PROFILE_STATUS
+from ...kernel.codes import (
+    BOUND,
+    EVIDENCE_BY,
+    EVIDENCE_CHANGE,
+    LANGUAGE,
+    LOCALIZATION,
+    OUTCOME,
+    PROFILE_STATUS,
+)
 from ...kernel.ranges import LAST_NODE, NODES, Range, columns_of, ranges_of
 from ...kernel.sentences import EVENT_SENTENCES, EVENTS, NUMBERS, REASONS
 from ...kernel.signals import Signal, by_reference, parameters_of, time_reference, variables_of
@@ -42,6 +50,8 @@ _CODES: Final = {
     "OUTCOME": OUTCOME,
     "BOUND": BOUND,
     "LANGUAGE": LANGUAGE,
+    "EVIDENCE": EVIDENCE_CHANGE,
+    "BY": EVIDENCE_BY,
 }
 # Bytes of the longest sentence in UTF-8, with all its numbers and the end.
 SENTENCE_SIZE: Final = 64 * (len(NUMBERS) + 1) + max(
@@ -58,6 +68,8 @@ _LEARNING_CELLS: Final = {
     "interventions": "drive_interventions",
     "set_series": "set_series",
     "holds": "holds",
+    "places": "evidence_places",
+    "accept": "learning_evidence_accept",
     "speed_min": "learning_speed_min_mps",
     "profile_iteration": "profile_iteration",
     "profile_status": "profile_status",

@@ -46,7 +46,7 @@ typedef struct { /* what only a model that learns has: cells, texts and columns 
     int32_t bound_count;
     int32_t store_text, driver_id, apply_learned, learn_if[3], localization;
     int32_t first_node, nodes, intervening, interventions, profile_iteration, profile_status;
-    int32_t set_series, holds, speed_min;
+    int32_t set_series, holds, places, speed_min, accept;
     int32_t base_column, learned_column, trace_column, next_column;
 } Learning;
 

@@ -81,6 +81,10 @@ static void add_barred(Line *line, double metres) {
     if (metres > 0.0) add(line, TEXT_BARRED, whole(metres));
 }
 
+static Number accept(const State *state) {
+    return tenths("", state->record[model.learning->accept].real);
+}
+
 typedef struct {
     char text[2 * sizeof(Name) + 32];
 } Roads;
@@ -115,6 +119,7 @@ static void add_pedal(Line *line, const State *state, const Run *run, int64_t k)
     case OUTCOME_STOP: add(line, TEXT_STOP, whole(KMH_PER_MPS * state->record[l->speed_min].real)); break;
     case OUTCOME_NOT_ELIGIBLE: add(line, TEXT_NOT_ELIGIBLE); break;
     case OUTCOME_FOLLOWING: add(line, TEXT_FOLLOWING); break;
+    case OUTCOME_PENDING: add(line, TEXT_PENDING, tenths("", NEXT(PROOF)).text, accept(state).text); break;
     default: add(line, TEXT_NOT_MOVED);
     }
 }
@@ -126,11 +131,39 @@ static void add_set_speed(Line *line, const State *state, const Run *run, int64_
     if ((int)NEXT(SET_OUTCOME) == OUTCOME_TAKEN_BACK) add(line, TEXT_SET_TAKEN_BACK);
     else if ((int)NEXT(SET_OUTCOME) == OUTCOME_NOT_ELIGIBLE)
         add(line, TEXT_SET_NOT_ELIGIBLE, signed_kmh(wish).text);
+    else if ((int)NEXT(SET_OUTCOME) == OUTCOME_PENDING)
+        add(line, TEXT_SET_PENDING, signed_kmh(wish).text, tenths("", NEXT(SET_PROOF)).text,
+            accept(state).text);
     else {
         if (offset < wish - SAME_OFFSET_MPS)
             add(line, TEXT_SET_CUT, signed_kmh(offset).text, signed_kmh(wish).text);
         else add(line, TEXT_SET_LEARNED, signed_kmh(offset).text);
         add_barred(line, NEXT(SET_BARRED_M));
+    }
+}
+
+static void add_place(Line *line, const State *state, const Run *run, int64_t k) {
+    bool faster = NEXT(PLACE_SIGN) > 0.0, lever = (int)NEXT(PLACE_BY) == BY_LEVER;
+    const char *test = lever ? faster ? TEXT_FASTER_BY_LEVER : TEXT_SLOWER_BY_LEVER
+                             : faster ? TEXT_FASTER_BY_PEDALS : TEXT_SLOWER_BY_PEDALS;
+    add(line, test, whole(NEXT(PLACE_FROM_M)), whole(NEXT(PLACE_TO_M)),
+        roads(run, NEXT(PLACE_FROM_M), NEXT(PLACE_TO_M)).text);
+    Number evidence = tenths("", NEXT(PLACE_EVIDENCE));
+    switch ((int)NEXT(PLACE_CHANGE)) {
+    case EVIDENCE_GAINED: add(line, TEXT_EVIDENCE_GAINED, evidence.text, accept(state).text); break;
+    case EVIDENCE_LOST: add(line, TEXT_EVIDENCE_LOST, evidence.text, accept(state).text); break;
+    case EVIDENCE_DROPPED: add(line, TEXT_EVIDENCE_DROPPED); break;
+    case EVIDENCE_ACCEPTED: add(line, TEXT_EVIDENCE_ACCEPTED); break;
+    default: add(line, TEXT_EVIDENCE_PUT_BACK);
+    }
+}
+
+static void tell_places(const Importer *importer, const State *state, const Run *run) {
+    for (int64_t k = 0; k < state->record[model.learning->places].integer; k++) {
+        Line line = {.size = 0};
+        if (NEXT(PLACE_TO_M) - NEXT(PLACE_FROM_M) < TRANSITION_MIN_M) continue;
+        add_place(&line, state, run, k);
+        importer_tell(importer, INFO, "%s", line.text);
     }
 }
 
@@ -149,4 +182,5 @@ void outcome_tell(const Importer *importer, const State *state, const Run *run) 
     Line line = {.size = 0};
     add(&line, TEXT_PLAN);
     if (add_holds(&line, state, run, 0)) importer_tell(importer, INFO, "%s", line.text);
+    tell_places(importer, state, run);
 }
