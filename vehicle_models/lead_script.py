@@ -12,10 +12,11 @@ from pldf.errors import ModelError
 from pldf.files.tables import Column, Fault, Format, Table, read_table
 from pldf.findings import Finding
 
-from .driver_script import SCRIPTS, UNITS
+from .driver_script import UNITS
 from .lead_motion import USUAL_MPS2
 from .lead_script_kernel import APPEAR, LEAVE, LOST, SEEN, SPEED, LeadScriptArrays
 
+TRAFFIC_SCRIPTS: Final = Path(__file__).parent / "traffic_scripts"
 # The order is that of ``script_id``: append, never insert.
 PACKED_TRAFFIC: Final = ("cut_in_and_stop.csv", "stop_and_go.csv")
 ACTIONS: Final = {"appear": APPEAR, "speed": SPEED, "lost": LOST, "seen": SEEN, "leave": LEAVE}
@@ -63,7 +64,7 @@ def packed_traffic(script_id: int) -> Path:
     if not 0 <= script_id < len(PACKED_TRAFFIC):
         known = ", ".join(f"{i} ({name})" for i, name in enumerate(PACKED_TRAFFIC))
         raise ModelError(f"script_id {script_id} is unknown; packed traffic scripts are {known}")
-    return SCRIPTS / PACKED_TRAFFIC[script_id]
+    return TRAFFIC_SCRIPTS / PACKED_TRAFFIC[script_id]
 
 
 def read_traffic(path: Path) -> TrafficScript:

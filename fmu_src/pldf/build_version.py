@@ -29,7 +29,7 @@ _DECIDING: Final = {
         "instance.py",
         "profiles/stored_profile.py",
     ),
-    "vehicle_models": ("*.py", "scripts/*"),
+    "vehicle_models": ("*.py", "scripts/*", "traffic_scripts/*"),
 }
 _CARRYING: Final = frozenset(
     {"native.py", "lead_vehicle.py", "longitudinal_vehicle.py", "scripted_driver.py"}

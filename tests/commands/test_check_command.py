@@ -22,6 +22,7 @@ from pldf.study.study_file import PACKAGED
 from sample_recording import sample_recording
 
 from vehicle_models.driver_script import SCRIPTS
+from vehicle_models.lead_script import TRAFFIC_SCRIPTS
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PHASES = ("A1", "A2", "B1", "B2")
@@ -67,6 +68,7 @@ def test_everything_that_the_project_ships_is_recognised_and_without_fault(
         "road": [*DATA.glob("*.xodr"), *DATA.glob("*.csv"), EXAMPLES / "my_road.csv"],
         "recording": [EXAMPLES / "my_recording.csv"],
         "driver script": [*SCRIPTS.glob("*.csv")],
+        "traffic script": [*TRAFFIC_SCRIPTS.glob("*.csv")],
         "study file": [*PACKAGED.glob("*.toml")],
         "profile": [profile],
         "mapping file": [*(EXAMPLES / "surveys").glob("*.toml")],

@@ -10,6 +10,7 @@ from pldf import cli
 from pldf.cosim.prepared import prepared_script
 
 from vehicle_models.driver_script import SCRIPTS, packed_script, read_script, script_arrays
+from vehicle_models.lead_script import packed_traffic, read_traffic, traffic_arrays
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -51,6 +52,17 @@ def test_events_are_listed_times_first_in_the_order_of_driving(run: Run) -> None
         ["100.5", "m", "gas", "0.3", "4", "s"],
         ["300", "m", "brake", "0.12", "2.5", "s"],
     ]
+
+
+def test_a_traffic_script_is_known_by_its_header_and_prepared(run: Run, tmp_path: Path) -> None:
+    scene = packed_traffic(1)
+    status, out, err = run(str(scene), "--export", "scene.prepared")
+    assert (status, err) == (0, "")
+    assert "events       10: 8 at a time, 2 at a position" in out
+    assert "       500 m appear     60 m    14 m/s\n" in out
+    assert (tmp_path / "scene.prepared").read_bytes() == prepared_script(
+        traffic_arrays(read_traffic(scene))
+    )
 
 
 def test_a_shipped_script_is_named_by_its_number(run: Run) -> None:

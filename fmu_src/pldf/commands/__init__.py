@@ -9,7 +9,7 @@ from typing import Final
 COMMANDS: Final = {
     "build": "Build the FMUs and the study's SSP packages, of Python source or native.",
     "route": "Show a route: limits, curves and base profile of an OpenDRIVE or CSV file.",
-    "script": "Show a driver script: what is pressed where or when, and for how long.",
+    "script": "Show a driver or traffic script: what is done where or when, and for how long.",
     "drive": "Drive once with the coupled FMUs; write the recording and a picture of it.",
     "check": "Check roads, recordings, tables or whole studies: every problem at once.",
     "learn": "Learn from the recording of a drive (SPAA) and write the next profile.",

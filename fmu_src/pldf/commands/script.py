@@ -1,4 +1,4 @@
-"""``pldf script``: read a driver script, say what it does, prepare it for native FMUs."""
+"""``pldf script``: read a script, say what it does, prepare it for native FMUs."""
 
 from __future__ import annotations
 
@@ -15,22 +15,28 @@ from vehicle_models.driver_script import (
     read_script,
     script_arrays,
 )
-from vehicle_models.script_kernel import AT_POSITION, BRAKE, GAS, RESUME
+from vehicle_models.lead_script import ACTIONS, LeadEvent, read_traffic, traffic_arrays
+from vehicle_models.lead_script_kernel import APPEAR, SPEED, LeadScriptArrays
+from vehicle_models.script_kernel import AT_POSITION, BRAKE, GAS, RESUME, ScriptArrays
 
 from ..cosim.prepared import SUFFIX, write_prepared_script
+from ..files.tables import read_header
 from .shared.telling import tell
 
 EXAMPLE: Final = "pldf script my_drive.csv --export my_drive.prepared"
 
 _LISTED_MAX: Final = 40
 _CONTROL_NAMES: Final = {code: name for name, code in CONTROLS.items()}
+_ACTION_NAMES: Final = {code: name for name, code in ACTIONS.items()}
 _UNIT_NAMES: Final = {code: name for name, code in UNITS.items()}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
-        "file", metavar="FILE", help="driver script (CSV), or the number of a shipped one: 0, 1"
+        "file",
+        metavar="FILE",
+        help="driver or traffic script (CSV), or the number of a shipped driver script: 0, 1",
     )
     parser.add_argument(
         "--export",
@@ -45,13 +51,35 @@ def run(options: argparse.Namespace) -> None:
     path = Path(options.file)
     if options.file.isdigit() and not path.exists():
         path = packed_script(int(options.file))
-    events = read_script(path)
-    tell(events.notes)
+    lines: Iterator[str]
+    columns: ScriptArrays | LeadScriptArrays
+    if "action" in read_header(path):
+        scene = read_traffic(path)
+        tell(scene.notes)
+        lines, columns = _scene(scene), traffic_arrays(scene)
+    else:
+        events = read_script(path)
+        tell(events.notes)
+        lines, columns = _summary(events), script_arrays(events)
     print(f"script       {path}")
-    print("\n".join(_summary(events)))
+    print("\n".join(lines))
     if options.export is not None:
-        write_prepared_script(script_arrays(events), options.export)
+        write_prepared_script(columns, options.export)
         print(f"written      {options.export}")
+
+
+def _scene(events: Sequence[LeadEvent]) -> Iterator[str]:
+    """What the car ahead does."""
+    placed = sum(event.unit == AT_POSITION for event in events)
+    yield f"events       {len(events)}: {len(events) - placed} at a time, {placed} at a position"
+    yield f"{'begins at':>12} {'action':7} {'gap':>7} {'speed':>9}"
+    in_order = sorted(events, key=lambda event: (event.unit, event.at))
+    for event in in_order[:_LISTED_MAX]:
+        gap = f"{event.gap_m:g} m" if event.action == APPEAR else ""
+        speed = f"{event.speed_mps:g} m/s" if event.action in (APPEAR, SPEED) else ""
+        begins = f"{event.at:g} {_UNIT_NAMES[event.unit]}"
+        yield f"{begins:>12} {_ACTION_NAMES[event.action]:7} {gap:>7} {speed:>9}".rstrip()
+    yield from _more(len(events))
 
 
 def _summary(events: Sequence[Event]) -> Iterator[str]:
@@ -66,9 +94,12 @@ def _summary(events: Sequence[Event]) -> Iterator[str]:
         value = f"{event.value:g}" if event.control in (GAS, BRAKE) else ""
         held = f"{event.duration_s:g} s"
         yield f"{begins:>12} {_CONTROL_NAMES[event.control]:10} {value:>6} {held:>8}"
-    hidden = len(events) - _LISTED_MAX
-    if hidden > 0:
-        yield f"{'':12} and {hidden} more"
+    yield from _more(len(events))
+
+
+def _more(events: int) -> Iterator[str]:
+    if events > _LISTED_MAX:
+        yield f"{'':12} and {events - _LISTED_MAX} more"
 
 
 def _prepared_file(text: str) -> Path:

@@ -10,6 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from vehicle_models.driver_script import read_script
+from vehicle_models.lead_script import read_traffic
 
 from ...errors import ModelError
 from ...files.tables import read_table
@@ -36,7 +37,7 @@ from .names import people
 
 _UNKNOWN: Final = (
     "neither a road, a recording, a questionnaire, a table of drives or participants, a driver "
-    "script, a profile, a study file nor a mapping file"
+    "or traffic script, a profile, a study file nor a mapping file"
 )
 
 
@@ -167,6 +168,10 @@ def _script(path: Path, _known: Known) -> list[Finding]:
     return list(read_script(path).notes)
 
 
+def _traffic(path: Path, _known: Known) -> list[Finding]:
+    return list(read_traffic(path).notes)
+
+
 def _profile(path: Path, _known: Known) -> list[Finding]:
     profile = read_profile(path)
     text = f"a profile of {profile.nodes - 1} m with {len(profile.iterations)} iterations"
@@ -193,6 +198,7 @@ _CHECKS: Final[Mapping[Kind, Callable[[Path, Known], list[Finding]]]] = {
     "people": _people,
     "exclusions": _exclusions,
     "driver script": _script,
+    "traffic script": _traffic,
     "profile": _profile,
     "study file": _study_file,
     "mapping file": _map,

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final, Literal
 
 from vehicle_models.driver_script import SCRIPT
+from vehicle_models.lead_script import TRAFFIC_SCRIPT
 
 from ...errors import ModelError
 from ...files.tables import Column, Format, read_header
@@ -21,7 +22,7 @@ from ..questionnaires.scales import asked_by
 
 Kind = Literal[
     "road", "recording", "questionnaire", "drives", "participants", "people",
-    "exclusions", "driver script", "profile",
+    "exclusions", "driver script", "traffic script", "profile",
     "study file", "mapping file", "",
 ]  # fmt: skip
 
@@ -37,6 +38,7 @@ _FORMATS: Final[dict[Kind, Format]] = {
     "drives": DRIVES,
     "participants": PARTICIPANTS,
     "driver script": SCRIPT,
+    "traffic script": TRAFFIC_SCRIPT,
 }
 _FITS: Final = 0.5  # share of the needed columns that tells what a table is
 _TABLE_SUFFIXES: Final = (".csv", ".tsv", ".txt", "")
