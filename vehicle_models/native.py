@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from pldf.build.native.model import NativeModel, Watch
+from pldf.build.native.model import NativeModel
 from pldf.build.native.pointers import columns, record_at
 from pldf.cosim.prepared import SUFFIX, prepared_script
+from pldf.instance import Watch
 from pldf.kernel import interpolation, planner, substeps
 from pldf.kernel.arrays import RouteArrays, Work
 
@@ -69,7 +70,7 @@ VEHICLE: Final = NativeModel(
     kept=1,
     route=RouteArrays,
     route_if=("grade_from_route", 1),
-    watch=Watch("invalid_input", ("", VEHICLE_INPUT), once=True, flag="warned"),
+    watches=(Watch("invalid_input", ("", VEHICLE_INPUT), once=True, flag="warned"),),
 )
 
 ROUTE_AT: Final = len(WishArrays._fields)
@@ -115,7 +116,7 @@ DRIVER: Final = NativeModel(
     route_if=("kind", PREFERENCE),
     events=ScriptArrays,
     events_if=("kind", SCRIPT),
-    watch=Watch("invalid_input", ("", DRIVER_INPUT), once=True, flag="warned"),
+    watches=(Watch("invalid_input", ("", DRIVER_INPUT), once=True, flag="warned"),),
 )
 
 
@@ -162,7 +163,7 @@ LEAD: Final = NativeModel(
     route_if=("kind", TRAFFIC),
     events=LeadScriptArrays,
     events_if=("kind", BY_SCRIPT),
-    watch=Watch("trouble", tuple(TROUBLE_TEXT[code] for code in sorted(TROUBLE_TEXT))),
+    watches=(Watch("trouble", tuple(TROUBLE_TEXT[code] for code in sorted(TROUBLE_TEXT))),),
 )
 
 

@@ -16,6 +16,7 @@ _PLACES = {
     "Learned": "recordings.offline",
     "ModelError": "errors",
     "Recording": "recordings.recording",
+    "Replay": "recordings.replayed",
     "Route": "roads",
     "StoredProfile": "profiles.store",
     "analyse": "api",
@@ -25,6 +26,7 @@ _PLACES = {
     "open_route": "roads",
     "read_profile": "profiles.single_file",
     "read_recording": "recordings.recording",
+    "replay": "api",
     "run_study": "api",
     "write_profile": "profiles.single_file",
 }

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from .profiles.store import StoredProfile
     from .recordings.offline import Learned
     from .recordings.recording import Recording
+    from .recordings.replayed import Replay
 
 PathLike = str | os.PathLike[str]
 
@@ -76,6 +77,43 @@ def learn(
         if finding.severity == "warning":
             warnings.warn(str(finding), stacklevel=2)
     return learn_from(recording, route, profile, function)
+
+
+def replay(
+    recording: Recording,
+    route: Route,
+    *,
+    profile: StoredProfile | None = None,
+    parameters: Mapping[str, Given] | None = None,
+) -> Replay:
+    """Give the driving function the inputs of a recorded drive once more, step by step.
+
+    With the version, profile and parameters of that drive it answers with the same bits.
+
+    Args:
+        recording: with every step and all inputs, as ``drive`` and the studies make it.
+        route: the route driven.
+        profile: what the drive followed; None: the base profile.
+        parameters: of the driving function, by FMI name, e.g. ``{"learn_faithful": True}``.
+
+    Returns:
+        The recording with what the function answers now in ``.recording``, and what it learned in
+        ``.iteration`` (None if it was not to learn).
+
+    Raises:
+        ModelError: inputs were not recorded, the profile belongs to another route, or there is no
+            such parameter or value.
+    """
+    from .function import DrivingFunction
+    from .recordings.offline import follow_known
+    from .recordings.replayed import replay as replayed
+
+    function = DrivingFunction()
+    set_parameters(function.record, parameters or {})
+    function.record.apply_learned = int(profile is not None)
+    function.prepare(route)
+    follow_known(function, route, profile)
+    return replayed(recording, function)
 
 
 def drive(  # noqa: PLR0913 - the options of a drive, all by name

@@ -6,19 +6,22 @@ import os
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import Final, cast
 
 import numpy as np
 
 from .driver_words import LEARNED, WORDS_SAVED, Driven, answer, fill, keep_words
 from .errors import ModelError
-from .function_words import INPUT_TEXT, KEPT_BESIDE, NO_STORE, OLDER_READING
+from .function_words import INPUT_TEXT, KEPT_BESIDE, LAP_TEXT, NO_STORE, OLDER_READING
 from .hmi_texts import text_of
-from .instance import Arrays, Instance, Level, views, zeros
+from .instance import Arrays, Instance, Watch, views, zeros
 from .kernel import drive
 from .kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from .kernel.codes import (
-    INPUT_OK,
+    LAP_ARRIVED,
+    LAP_BEGUN_ANEW,
+    LAP_RECORDED,
     PROFILE_BASE,
     PROFILE_LOADED,
     PROFILE_NOT_PERSISTED,
@@ -33,6 +36,7 @@ from .kernel.signals import signals_of, since, text_output, text_parameter
 from .kernel.state import PldfState
 from .outcome_words import lines_of
 from .outcomes import Outcomes, outcomes_of
+from .own_recording import WRITTEN, Drive, folder_of, save_drive, why_not_writable
 from .profiles.store import (
     STORE_VARIABLE,
     Iteration,
@@ -52,6 +56,17 @@ BOUNDS: Final = tuple(
 )
 
 
+# What the user is told about while driving.
+WATCHES: Final = (
+    Watch("input_state", tuple(INPUT_TEXT[code] for code in sorted(INPUT_TEXT))),
+    Watch(
+        "lap",
+        tuple(LAP_TEXT[code] for code in sorted(LAP_TEXT)),
+        quiet=(LAP_RECORDED, LAP_ARRIVED, LAP_BEGUN_ANEW),
+    ),
+)
+
+
 @dataclass(slots=True)
 class Files:
     """Strings; everything works with no parameter set and no output read."""
@@ -60,6 +75,13 @@ class Files:
     profile_store: str = text_parameter(
         "Folder of learned profiles; empty: environment variable PLDF_PROFILE_STORE",
         name="profile_store",
+    )
+    recording_folder: str = since(
+        "0.3",
+        text_parameter(
+            "Folder for the function's own recording of each drive; empty: environment variable "
+            "PLDF_RECORDING_FOLDER; neither: no recording"
+        ),
     )
     hmi_text: str = since("0.3", text_output("What the instrument cluster says, one sentence"))
 
@@ -81,7 +103,8 @@ class DrivingFunction(Instance[PldfState]):
         self.learned: Iteration | None = None
         self.marks: tuple[Mark, ...] = ()
         self._store: ProfileStore | None = None
-        self._reported = INPUT_OK
+        self._recordings: Path | None = None
+        self._reported = dict.fromkeys((watch.field for watch in WATCHES), 0)
 
     def initialize(self) -> None:
         """Read route and profile, plan, and make the outputs valid."""
@@ -89,6 +112,7 @@ class DrivingFunction(Instance[PldfState]):
         self.tell(route.notes)
         self.prepare(route)
         self.follow(self._load(fingerprint(route)))
+        self._open_recordings()
         self.refresh()
 
     def prepare(self, route: Route) -> None:
@@ -102,7 +126,7 @@ class DrivingFunction(Instance[PldfState]):
             )
         blank = (*zeros(ProfileArrays, route.nodes), *zeros(TraceArrays, route.nodes))
         self.attach(cast(Arrays, (*route_arrays(route), *blank)))
-        self._reported = INPUT_OK
+        self._reported = dict.fromkeys((watch.field for watch in WATCHES), 0)
         self.learned = None
         self.marks = route.marks
         start_drive(self.record, self.route, self.profile, self.work)
@@ -140,21 +164,21 @@ class DrivingFunction(Instance[PldfState]):
         if self.record.teach_wanted:
             for text in answer(self.record, self.driven, self.stored):
                 self.report("info", f"t = {1e-9 * self.record.time_ns:.3f} s: {text}")
-        if self.record.input_state != self._reported:
-            self._reported = self.record.input_state
-            level: Level = "info" if self._reported == INPUT_OK else "warning"
-            self.report(
-                level, f"t = {1e-9 * self.record.time_ns:.3f} s: {INPUT_TEXT[self._reported]}"
-            )
+        for watch in WATCHES:
+            now = getattr(self.record, watch.field)
+            if now != self._reported[watch.field]:
+                self._reported[watch.field] = now
+                self.report_watched(watch, now, self.record.time_ns)
 
     def say(self) -> None:
         """Put the sentence of the instrument cluster together."""
         self.texts.hmi_text = text_of(self.record)
 
     def finish(self) -> None:
-        """Keep the driver's words, learn from the drive and save the profile; called once."""
+        """Keep the driver's words, learn, save profile and recording; called once."""
         if self.stored is None:
             return
+        self._save_recording()
         words = self.words_kept().iterations[len(self.stored.iterations) :]
         if learns(self.record) and self.record.nodes >= 2:
             iteration = self.learn()
@@ -192,6 +216,24 @@ class DrivingFunction(Instance[PldfState]):
     def outcomes(self) -> Outcomes:
         """Return what became of each intervention, once ``learn`` was called."""
         return outcomes_of(self.record, self.trace, self.following)
+
+    def _open_recordings(self) -> None:
+        """Tell before the drive, not after it, that its recording could not be written."""
+        self._recordings = folder_of(self.texts.recording_folder)
+        if self._recordings is not None and (problem := why_not_writable(self._recordings)):
+            self.report("warning", problem)
+
+    def _save_recording(self) -> None:
+        if self._recordings is None or self.record.nodes < 2 or self.stored is None:
+            return
+        st = self.record
+        drive = Drive(st, self.route, self.profile, self.trace, self.stored.route)
+        try:
+            path = save_drive(self._recordings, drive)
+        except ModelError as problem:
+            self.report("error", str(problem))
+            return
+        self.report("info", WRITTEN % (st.nodes - 1, path))
 
     def _open_store(self) -> ProfileStore | None:
         folder = self.texts.profile_store or os.environ.get(STORE_VARIABLE, "")

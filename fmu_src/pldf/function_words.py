@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from typing import Final
 
-from .kernel.codes import INPUT_INVALID, INPUT_OK, OFF_ROUTE, POSITION_JUMP
+from .kernel.codes import (
+    INPUT_INVALID,
+    INPUT_OK,
+    LAP_ARRIVED,
+    LAP_BEGUN_ANEW,
+    LAP_RECORDED,
+    LAP_SET_BACK,
+    OFF_ROUTE,
+    POSITION_JUMP,
+)
 from .profiles.store import STORE_VARIABLE
 
 INPUT_TEXT: Final = {
@@ -12,6 +21,14 @@ INPUT_TEXT: Final = {
     INPUT_INVALID: "an input is not a finite, plausible number: mode FAULT, safe request",
     OFF_ROUTE: "the vehicle is off the route: function inactive",
     POSITION_JUMP: "the position jumped: function inactive until it is reactivated",
+}
+
+LAP_TEXT: Final = {
+    LAP_RECORDED: "the drive is recorded",
+    LAP_ARRIVED: "the road's end: nothing behind it is recorded, learned or counted in the rates",
+    LAP_SET_BACK: "the car was set back without a reset: the drive so far is learned when it is "
+    "terminated, what follows is not; reset the function, or make a new instance, for a new drive",
+    LAP_BEGUN_ANEW: "the car was set back before the function was active: the drive begins here",
 }
 
 NO_STORE: Final = (

@@ -32,6 +32,26 @@ class Message:
     text: str
 
 
+@dataclass(frozen=True)
+class Watch:
+    """A field of the record whose changes the user is told about.
+
+    Attributes:
+        field: name of an integer field; 0 is the normal value.
+        texts: one per value.
+        once: told once per drive, by the first step that meets it; else with the time, on each
+            change.
+        flag: field that is set to 1 once it was told, empty without ``once``.
+        quiet: values that are no reason for a warning.
+    """
+
+    field: str
+    texts: tuple[str, ...]
+    once: bool = False
+    flag: str = ""
+    quiet: tuple[int, ...] = (0,)
+
+
 class Instance(Generic[RecordT]):
     """A model that can be initialized, stepped, finished, saved and restored.
 
@@ -73,6 +93,11 @@ class Instance(Generic[RecordT]):
     def report(self, level: Level, text: str) -> None:
         """Add a message for the user."""
         self.messages.append(Message(level, text))
+
+    def report_watched(self, watch: Watch, value: int, time_ns: int) -> None:
+        """Add what ``watch`` says of a field that has another value since this time."""
+        level: Level = "info" if value in watch.quiet else "warning"
+        self.report(level, f"t = {1e-9 * time_ns:.3f} s: {watch.texts[value]}")
 
     def tell(self, findings: Iterable[Finding]) -> None:
         """Report how a file of the user was read."""

@@ -261,4 +261,4 @@ def test_a_car_that_drives_over_the_end_is_recorded_up_to_the_last_node() -> Non
     play(made, s_m, 25.0, mode=np.where(gas, GAS_OVERRIDE, ACTIVE))
     st = made.record
     assert (st.first_node, st.first_node + st.nodes) == (0 if s_m[0] == 0.0 else 1, 101)
-    assert spans(made) == [(90.5, s_m[-1])]
+    assert spans(made) == [(90.5, 100.5)]  # behind the end nothing is recorded

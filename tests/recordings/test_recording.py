@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from every_column import every_column
 from pldf.errors import ModelError
 from pldf.function import DrivingFunction
 from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE, MODE, STANDBY
-from pldf.recordings.columns import COLUMNS
+from pldf.recordings.columns import COLUMNS, LABORATORY
 from pldf.recordings.derived import completed
 from pldf.recordings.recording import (
     Recording,
@@ -18,16 +18,13 @@ from pldf.recordings.recording import (
     recording_csv,
     write_recording,
 )
-from sample_recording import sample_recording
 
 NEEDED = "time_s,s_m,speed_mps,mode"
 ROWS = "0,0,20,ACTIVE\n0.1,2,20,ACTIVE\n0.2,4,20.5,GAS_OVERRIDE\n"
 
 
 def test_a_recording_reads_back_to_the_same_bits(tmp_path: Path) -> None:
-    made = replace(sample_recording(1.0 / 3.0), comments=("participant 7", "drive A2"))
-    made.columns["mode"][:5] = range(5)
-    made.columns["eligible"][3:9] = 0.0
+    made = Recording(every_column(200), ("participant 7", "drive A2"))
     write_recording(tmp_path / "a.csv", made)
     read = read_recording(tmp_path / "a.csv")
     assert read.comments == made.comments
@@ -86,7 +83,7 @@ def test_what_lacks_is_derived_from_the_road_and_the_profile() -> None:
     mode[200:] = STANDBY
     few = Recording({"time_s": time, "s_m": 10.0 * time, "speed_mps": 10.0 + time, "mode": mode})
     whole = completed(few, function)
-    assert list(whole.columns) == list(COLUMNS)
+    assert list(whole.columns) == list(LABORATORY.names)
     cell = few["s_m"].astype(int)
     limit = np.asarray(function.route.limit_mps)[cell]
     np.testing.assert_array_equal(whole["limit_mps"], limit)

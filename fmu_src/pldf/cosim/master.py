@@ -19,36 +19,22 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ..errors import ModelError
-from ..recordings.columns import COLUMNS
+from ..recordings.columns import COLUMNS, INPUTS, LEARNED_DELTA, OUTPUTS
 from ..recordings.recording import Recording
 from .ctrl_c import noted_ctrl_c
 from .drive_limits import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS, STEP_S
 from .fmu import BufferElement, Fmu, Slave, unpack
 from .kinds import PARTS
 from .native_files import readable_values
-from .values import FmuMessage, Values
+from .values import FmuMessage, Value, Values
 
 _PROGRESS_STEPS: Final = 200
 
 ARRIVED: Final = "reached the end of the route"
 
-# Column of the recording -> output in which it is seen.
-_SEEN: Final = {
-    "s_m": ("vehicle", "s_m"),
-    "speed_mps": ("vehicle", "speed_mps"),
-    "acceleration_mps2": ("vehicle", "acceleration_mps2"),
-    "mode": ("pldf", "mode"),
-    "gas_pedal": ("driver", "driver.gas_pedal"),
-    "brake_pedal": ("driver", "driver.brake_pedal"),
-    "set_speed_mps": ("pldf", "set_speed_mps"),
-    "set_speed_offset_mps": ("pldf", "set_speed_offset_mps"),
-    "base_mps": ("pldf", "base_speed_mps"),
-    "learned_delta_mps": ("pldf", "hmi.learned_delta_mps"),
-    "limit_mps": ("pldf", "limit_mps"),
-}
-
 Link = tuple[BufferElement, BufferElement]
 Rows = list[list[float]]
+Seen = dict[str, BufferElement]  # column of the recording -> where its value lies
 
 
 class Connection(NamedTuple):
@@ -207,18 +193,47 @@ def _drive(
         for source, target in wires
     ]
     _initialize(slaves, links)
-    rows, ending = _run(slaves, links, length_m, step_s, progress)
+    seen = _seen(slaves, wires)
+    rows, ending = _run(slaves, links, seen, length_m, step_s, progress)
     outputs = {name: float(element.value) for name, element in slaves["pldf"].outputs.items()}
     for slave in slaves.values():
         slave.terminate()
-    eligible = float(values.get("pldf", {}).get("eligible", 1))
+    fixed = _fixed(fmus["pldf"], seen, values.get("pldf", {}))
     return Drive(
-        recording=_recording(rows, step_s, eligible),
+        recording=_recording(rows, list(seen), fixed, step_s),
         outputs=outputs,
         messages=[message for slave in slaves.values() for message in slave.messages],
         arrived=ending == ARRIVED,
         ending=ending,
     )
+
+
+def _seen(slaves: Mapping[str, Slave], wires: list[Connection]) -> Seen:
+    """Return what is recorded: what feeds the function's inputs, and its outputs."""
+    sources = {wire.target[1]: wire.source for wire in wires if wire.target[0] == "pldf"}
+    inputs = {
+        column: slaves[sources[name][0]].outputs[sources[name][1]]
+        for column, name in INPUTS.items()
+        if name in sources
+    }
+    outputs = slaves["pldf"].outputs
+    shown = {**OUTPUTS, "learned_delta_mps": LEARNED_DELTA}
+    return {**inputs, **{c: outputs[name] for c, name in shown.items() if name in outputs}}
+
+
+def _fixed(function: Fmu, seen: Seen, values: Mapping[str, Value]) -> dict[str, float]:
+    """Return the inputs of the function that nothing feeds, by column."""
+    return {
+        column: _as_number(values.get(name, function.signals[name].start))
+        for column, name in INPUTS.items()
+        if column not in seen and name in function.signals
+    }
+
+
+def _as_number(value: Value) -> float:
+    """Return a value as a file or a model description states it, as a number."""
+    flags = {"true": 1.0, "false": 0.0, "": 0.0}
+    return flags[value] if value in flags else float(value)
 
 
 def _initialize(slaves: Mapping[str, Slave], links: list[Link]) -> None:
@@ -238,13 +253,14 @@ def _initialize(slaves: Mapping[str, Slave], links: list[Link]) -> None:
 def _run(
     slaves: Mapping[str, Slave],
     links: list[Link],
+    recorded: Seen,
     length_m: float,
     step_s: float,
     progress: Callable[[float], None],
 ) -> tuple[Rows, str]:
     """Step until the drive ends; return what was seen before each step and how it ended."""
     rows: Rows = []
-    seen = [slaves[part].outputs[name] for part, name in _SEEN.values()]
+    seen = list(recorded.values())
     position, speed = (slaves["vehicle"].outputs[name] for name in ("s_m", "speed_mps"))
     moved = 0  # last step at which the vehicle moved
     time_max_s = STANDSTILL_MAX_S + length_m / SLOWEST_MPS
@@ -271,10 +287,10 @@ def _exchange(links: list[Link]) -> None:
         target.buffer[target.at] = source.buffer[source.at]
 
 
-def _recording(rows: Rows, step_s: float, eligible: float) -> Recording:
-    values = np.array(rows, dtype=np.float64).reshape(len(rows), len(_SEEN))
-    columns = dict(zip(_SEEN, values.T, strict=True))
+def _recording(rows: Rows, seen: list[str], fixed: dict[str, float], step_s: float) -> Recording:
+    values = np.array(rows, dtype=np.float64).reshape(len(rows), len(seen))
+    columns = dict(zip(seen, values.T, strict=True))
+    columns |= {name: np.full(len(rows), value) for name, value in fixed.items()}
     columns["profile_mps"] = columns["base_mps"] + columns.pop("learned_delta_mps")
     columns["time_s"] = np.arange(float(len(rows))) * step_s
-    columns["eligible"] = np.full(len(rows), eligible)
-    return Recording({name: np.ascontiguousarray(columns[name]) for name in COLUMNS})
+    return Recording({n: np.ascontiguousarray(columns[n]) for n in COLUMNS if n in columns})

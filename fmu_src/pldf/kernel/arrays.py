@@ -15,9 +15,10 @@ from typing import Annotated, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .codes import REASON
+from .codes import MODE, REASON
 from .ranges import COUNT, EVIDENCE, NODE, Range
 
+MODE_CODE = Range(0, len(MODE.items) - 1)
 REASON_CODE = Range(0, len(REASON.items) - 1)
 
 # Outside the kernels: a vector of one value per row, metre or person.
@@ -91,6 +92,14 @@ class TraceArrays(NamedTuple):
     barred: Floats  # intervention k: 0, or why it must not be learned (OUTCOME in codes)
     word_kind: Floats  # word k of the driver: WORD_FORGET or WORD_UNDO (codes)
     word_at: Floats  # word k: position of the car, or number of the iteration taken back
+    # For the function's own recording (see ``log``): what was in force at
+    mode: Annotated[Floats, MODE_CODE]  # node: MODE in codes
+    gas_pedal: Floats  # node: travel, 0..1
+    brake_pedal: Floats  # node: travel, 0..1
+    shown_mps: Floats  # node: set speed
+    offset_mps: Floats  # node: offset of the set speed that the driver set
+    profile_mps: Floats  # node: profile followed
+    reason: Annotated[Floats, REASON_CODE]  # node: REASON in codes
 
 
 class Work(NamedTuple):

@@ -140,6 +140,13 @@ PROFILE_STATUS: Final = Enumeration(
     "ProfileStatus", ("BASE", "LOADED", "REFUSED", "NOT_PERSISTED", "NOT_WRITABLE")
 )
 
+# How far the recording of this drive is.
+LAP_RECORDED: Final = 0
+LAP_ARRIVED: Final = 1  # at the road's end: nothing behind it belongs to the drive
+LAP_SET_BACK: Final = 2  # the car was set back without a reset: what follows is another drive
+LAP_BEGUN_ANEW: Final = 3  # it was set back before the function had ever been active: recorded
+LAP: Final = Enumeration("Lap", ("RECORDED", "ARRIVED", "SET_BACK", "BEGUN_ANEW"))
+
 # Why the position or an input was not accepted in the last step (0: it was).
 INPUT_OK: Final = 0
 INPUT_INVALID: Final = 1

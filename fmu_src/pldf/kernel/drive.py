@@ -29,6 +29,7 @@ from .lever import (
     update_set_speed,
 )
 from .localization import locate
+from .log import log_nodes, note_for_log
 from .modes import (
     BRAKE_PRESS,
     CANCEL,
@@ -71,6 +72,7 @@ def drive_step(
         st.sampled_y_m = st.vehicle_y_m
         notice_temporary_limit(st, route)
         record_sample(st, route, trace)
+        log_nodes(st, profile, trace)
         update_mode_and_set_speed(st, route, profile)
         hear_driver(st, route, profile, trace)
     else:  # no sample either: what is not known is neither recorded nor a place
@@ -86,6 +88,7 @@ def drive_step(
     notice_new_limit(st)
     update_cluster(st, route, profile)
     note_set_speed(st)
+    note_for_log(st)
 
 
 def refresh(st: PldfState, route: RouteArrays, profile: ProfileArrays) -> None:

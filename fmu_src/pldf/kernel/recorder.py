@@ -10,6 +10,7 @@ from __future__ import annotations
 from .arrays import RouteArrays, TraceArrays
 from .codes import ACTIVE, GAS_OVERRIDE, LEARN_CONSISTENT, LEARN_OFF, OUTCOME_FOLLOWING, STANDBY
 from .interpolation import cell_at
+from .lap import end_lap, is_far, is_over, takes_sample
 from .state import PldfState
 
 SECOND_NS = 1e-9
@@ -19,10 +20,15 @@ def record_sample(st: PldfState, route: RouteArrays, trace: TraceArrays) -> None
     """Add the sample in ``st`` (time_ns, s_m, inputs, mode, shown_set_mps) to trace and rates."""
     if st.samples > 0 and st.time_ns <= st.previous_ns:
         return
+    if not takes_sample(st):
+        return
     _count_time(st)
+    if st.mode in (ACTIVE, GAS_OVERRIDE):
+        st.activated = 1
     if not _is_stray(st, route):
         _follow_intervention(st, trace)
         _advance_knots(st, route, trace)
+        end_lap(st, route)
         st.previous_s_m = st.s_m
     st.samples += 1
     st.previous_ns = st.time_ns
@@ -45,7 +51,7 @@ def learns_consistent(st: PldfState) -> bool:
 
 def may_learn(st: PldfState) -> bool:
     """Tell whether what the driver does now may be learned, for all that learning reads of it."""
-    wanted = st.eligible != 0 and st.teach_pause == 0 and st.settling == 0
+    wanted = not is_over(st) and st.eligible != 0 and st.teach_pause == 0 and st.settling == 0
     return wanted and st.following_limits == 0 and st.temporary_mps == 0.0
 
 
@@ -199,7 +205,7 @@ def _is_stray(st: PldfState, route: RouteArrays) -> bool:
     Followed, a single one far ahead would end the recording, since only progress is recorded.
     """
     off_route = st.s_m < 0.0 or st.s_m > len(route.limit_mps) - 1.0
-    return off_route and st.samples > 0 and _is_far(st)
+    return off_route and st.samples > 0 and is_far(st)
 
 
 def _is_hole(st: PldfState) -> bool:
@@ -207,14 +213,7 @@ def _is_hole(st: PldfState) -> bool:
     if st.samples == 0:
         return False
     passed_s = SECOND_NS * (st.time_ns - st.previous_ns)
-    return passed_s > st.learning_recording_gap_s or _is_far(st)
-
-
-def _is_far(st: PldfState) -> bool:
-    passed_s = SECOND_NS * (st.time_ns - st.previous_ns)
-    fastest = max(st.previous_speed_mps, st.vehicle_speed_mps)
-    reach = fastest * passed_s + st.control_position_jump_max_m
-    return abs(st.s_m - st.previous_s_m) > reach
+    return passed_s > st.learning_recording_gap_s or is_far(st)
 
 
 def _set_speed_for(st: PldfState, route: RouteArrays, node: int) -> float:

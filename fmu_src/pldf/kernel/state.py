@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .codes import EVENT, INPUT_STATE, MODE, PROFILE_STATUS, REASON, WORDS_MAX
+from .codes import EVENT, INPUT_STATE, LAP, MODE, PROFILE_STATUS, REASON, WORDS_MAX
 from .parameters import (
     ClusterParameters,
     ControlParameters,
@@ -220,6 +220,14 @@ class Memory:
     manual_end_m: float = 0.0
     manual_behind_mps: float = 0.0  # the profile's speed there
     shown_set_mps: float = 0.0  # manual set speed shown at the end of the last step, 0 = none
+    lap: int = code(LAP)
+    set_back_ns: int = nanoseconds(low=-1, start=-1, at_most="time_ns")  # since when; -1: it is not
+    # the function's own recording: the node behind the last one logged, and what was shown there
+    logged_end: int = whole(0, COUNT_MAX, at_most=NODES)
+    logged_set_mps: float = 0.0
+    logged_offset_mps: float = 0.0
+    logged_reason: int = code(REASON)
+    activated: int = flag()  # the function was active in a sample of this drive
     # recorder: the last two knots of the resampled drive, and the sample before this one
     samples: int = whole(0, TIME_MAX_NS)
     from_s_m: float = 0.0

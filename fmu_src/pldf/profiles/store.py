@@ -20,20 +20,19 @@ What is promised, whatever happens (two processes, kill -9, a full disk):
 from __future__ import annotations
 
 import os
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 from ..errors import ModelError
 from ..files.disk import (
-    LockHeld,
     folder_lock,
     free_name,
     real_path,
     reason,
     rename_file,
 )
+from ..files.folders import nearest_entry, require_writable
 from ..kernel.arrays import FloatArray
 from .older_reading import OlderReading, find_older_reading, pairs_of_one_road
 from .profile_file import same_history
@@ -179,15 +178,12 @@ class ProfileStore:
             ModelError: a profile could not be saved here.
         """
         self._require_folder()
-        nearest = next(p for p in (self.folder, *self.folder.parents) if p.is_dir())
         try:
-            # The lock is made as any file is; and a lock that somebody left would be in the way.
-            with suppress(LockHeld), folder_lock(nearest, 0.0):
-                pass
+            require_writable(self.folder)
         except OSError as error:
             raise ModelError(
-                f"{nearest}: cannot be written to ({reason(error)}); make it writable, or choose "
-                "another profile store"
+                f"{nearest_entry(self.folder)}: cannot be written to ({reason(error)}); make it "
+                "writable, or choose another profile store"
             ) from error
 
     def rollback(self, driver_id: int, route: str, to: int) -> StoredProfile:
@@ -196,7 +192,7 @@ class ProfileStore:
 
     def _require_folder(self) -> None:
         """Refuse early a store that can never be made, because a file is in its way."""
-        nearest = next(p for p in (self.folder, *self.folder.parents) if os.path.exists(p))
+        nearest = nearest_entry(self.folder)
         if not nearest.is_dir():
             raise ModelError(f"{nearest}: not a folder; choose another profile store")
 

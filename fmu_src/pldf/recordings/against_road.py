@@ -58,7 +58,7 @@ def _ends(file: str, from_m: float, to_m: float, length: float) -> Iterator[Find
         yield Finding(
             "warning", file, 0, "s_m",
             f"goes on to {to_m:.0f} m, {to_m - length:.0f} m past the road's end ({length:.0f} m)",
-            "nothing is learned there, but its time counts for the rates",
+            "nothing is learned there, and its time does not count for the rates",
             "is it another road, or one drawn too short? cut the recording at the road's end",
         )  # fmt: skip
     if from_m < -_BEYOND_M:

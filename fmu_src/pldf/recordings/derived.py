@@ -18,6 +18,7 @@ from ..kernel.arrays import FloatArray
 from ..kernel.codes import GAS_OVERRIDE, STANDBY
 from ..kernel.units import KMH_PER_MPS
 from .columns import COLUMNS
+from .lap import first_lap
 from .quality import cells_of
 from .recording import Recording
 
@@ -53,7 +54,7 @@ class Offsets(NamedTuple):
 def completed(
     recording: Recording, function: DrivingFunction, file: str = "", profile_known: bool = True
 ) -> Recording:
-    """Return ``recording`` with all columns that can be known, and notes of how they came about.
+    """Return one lap of ``recording`` with all columns that can be known, and notes of it.
 
     Pedals come from the mode (standby after driving counts as braked), acceleration from the
     speed, set speed and offset from each other and what the function sets by itself: the limit
@@ -66,6 +67,7 @@ def completed(
         profile_known: False if it is not known what the function had learned before the drive:
             then ``profile_mps``, and set speed and offset from each other, are not derived.
     """
+    recording = first_lap(recording, function, file)
     columns = dict(recording.columns)
     road, profile = _Road(function, columns["s_m"]), function.profile
     limit_mps = road.per_cell(function.route.limit_mps)

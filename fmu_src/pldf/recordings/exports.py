@@ -14,16 +14,21 @@ from typing import Any, Final
 import numpy as np
 
 from ..errors import ModelError
-from ..kernel.codes import MODE
-from .columns import COLUMNS, RECORDING
+from .columns import COLUMNS, KINDS
 from .inputs import not_installed
 from .recording import Recording
 
-UNITS: Final = {column.name: column.unit for column in RECORDING.columns}
+UNITS: Final = {name: column.unit for name, column in KINDS.items()}
+
+_INTEGER: Final = {
+    name: np.uint32 if column.kind == "whole" else np.uint8
+    for name, column in KINDS.items()
+    if not column.unit
+}
 
 
 def write_parquet(path: Path, recording: Recording) -> None:
-    """Write ``recording`` as Parquet: float64, ``mode`` by name, ``eligible`` as Boolean.
+    """Write ``recording`` as Parquet: float64, modes and the like by name, flags as Boolean.
 
     The unit of a column is in its field's metadata, key ``unit``; comments are in the schema's.
 
@@ -38,7 +43,7 @@ def write_parquet(path: Path, recording: Recording) -> None:
     arrays, fields = [], []
     for name in _names(recording):
         array = pa.array(_typed(name, recording))
-        arrays.append(array.dictionary_encode() if name == "mode" else array)
+        arrays.append(array.dictionary_encode() if KINDS[name].words else array)
         fields.append(pa.field(name, arrays[-1].type, metadata={"unit": UNITS[name]}))
     comments = {"comments": "\n".join(recording.comments)}
     table = pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata=comments))
@@ -58,11 +63,11 @@ def write_mdf4(path: Path, recording: Recording) -> None:
         raise not_installed("MDF4", "asammdf", "mdf") from error
     signals = [
         Signal(
-            samples=recording[name] if UNITS[name] else recording[name].astype(np.uint8),
+            samples=recording[name] if UNITS[name] else recording[name].astype(_INTEGER[name]),
             timestamps=recording["time_s"],
             name=name,
             unit=UNITS[name],
-            conversion=_texts_of_codes() if name == "mode" else None,
+            conversion=_texts_of_codes(KINDS[name].words) if KINDS[name].words else None,
         )
         for name in _names(recording)
         if name != "time_s"
@@ -82,15 +87,16 @@ def _names(recording: Recording) -> list[str]:
 
 def _typed(name: str, recording: Recording) -> Any:
     values = recording[name]
-    if name == "mode":
-        return [MODE.items[int(code)] for code in values]
-    return values != 0.0 if name == "eligible" else values
+    kind = KINDS[name]
+    if kind.words:
+        return [kind.words[int(code)] for code in values]
+    return values != 0.0 if kind.kind == "flag" else values
 
 
-def _texts_of_codes() -> dict[str, Any]:
-    """Return the conversion of a code to the name of the mode."""
-    codes = {f"val_{code}": float(code) for code in range(len(MODE.items))}
-    return {**codes, **{f"text_{code}": item for code, item in enumerate(MODE.items)}}
+def _texts_of_codes(words: tuple[str, ...]) -> dict[str, Any]:
+    """Return the conversion of a code to its name."""
+    codes = {f"val_{code}": float(code) for code in range(len(words))}
+    return {**codes, **{f"text_{code}": word for code, word in enumerate(words)}}
 
 
 @contextmanager

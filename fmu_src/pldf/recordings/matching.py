@@ -13,7 +13,7 @@ from typing import Final
 from ..errors import ModelError
 from ..files.tables import Column, Fault, TableError
 from ..findings import Finding
-from .columns import RECORDING
+from .columns import LABORATORY, RECORDING
 from .inputs import Input
 from .mapping import RecordingMap, Source, ready_maps
 from .units import unit_named, units_of
@@ -55,8 +55,8 @@ def found_columns(file: Input, mapping: RecordingMap) -> list[Found]:
             raise ModelError("\n  ".join(wrong))
         try:
             if file.load is None:
-                file.table(RECORDING)  # says it with the line of the header
-            lacks = f"{wrong[0]}; a recording has the columns {RECORDING.header}"
+                file.table(LABORATORY)  # says it with the line of the header
+            lacks = f"{wrong[0]}; a recording has the columns {LABORATORY.header}"
             raise TableError(file.path, [Fault(0, "", lacks)])
         except TableError as error:
             raise ModelError(f"{error}\n  {_way_out(file.path)}") from None

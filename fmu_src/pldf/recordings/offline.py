@@ -78,15 +78,7 @@ def learn_from(
     function = function or DrivingFunction()
     function.prepare(route)
     named = stored is not None
-    if stored is None:
-        base = np.array(function.profile.base_mps)
-        stored = StoredProfile(function.record.driver_id, fingerprint(route), base)
-    elif stored.route != fingerprint(route):
-        raise ModelError(
-            f"the profile belongs to route {stored.route}, not to {route.name} "
-            f"({fingerprint(route)}); {_way_out(stored, np.array(function.profile.base_mps))}"
-        )
-    function.follow(stored)
+    stored = follow_known(function, route, stored)
     whole = completed(recording, function, file)
     columns = whole.columns
     absent = np.zeros(len(recording))  # no lead car limited, no temporary limit
@@ -103,6 +95,26 @@ def learn_from(
     iteration = function.learn("learn")
     notes = (*whole.notes, *_contradicted(recording, function, file, named))
     return Learned(function, stored.with_iteration(iteration), iteration, notes)
+
+
+def follow_known(
+    function: DrivingFunction, route: Route, stored: StoredProfile | None
+) -> StoredProfile:
+    """Have ``function``, prepared for ``route``, follow a profile; None: the base profile.
+
+    Raises:
+        ModelError: it belongs to another route.
+    """
+    if stored is None:
+        base = np.array(function.profile.base_mps)
+        stored = StoredProfile(function.record.driver_id, fingerprint(route), base)
+    elif stored.route != fingerprint(route):
+        raise ModelError(
+            f"the profile belongs to route {stored.route}, not to {route.name} "
+            f"({fingerprint(route)}); {_way_out(stored, np.array(function.profile.base_mps))}"
+        )
+    function.follow(stored)
+    return stored
 
 
 def _way_out(stored: StoredProfile, base_mps: FloatArray) -> str:

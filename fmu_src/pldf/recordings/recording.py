@@ -13,8 +13,7 @@ from pathlib import Path
 from ..files.tables import Cell, table_csv, write_table
 from ..findings import Finding
 from ..kernel.arrays import FloatArray
-from ..kernel.codes import MODE
-from .columns import COLUMNS
+from .columns import COLUMNS, KINDS
 from .mapping import RecordingMap, read_map
 from .reading import read_columns
 
@@ -59,9 +58,12 @@ def _cells(recording: Recording) -> dict[str, list[Cell] | FloatArray]:
     cells: dict[str, list[Cell] | FloatArray] = {
         name: recording[name] for name in COLUMNS if name in recording
     }
-    cells["mode"] = [MODE.items[int(code)] for code in recording["mode"]]
-    if "eligible" in cells:
-        cells["eligible"] = [bool(flag) for flag in recording["eligible"]]
+    for name in cells:
+        kind = KINDS[name]
+        if kind.kind == "word":
+            cells[name] = [kind.words[int(code)] for code in recording[name]]
+        elif kind.kind in ("flag", "whole"):
+            cells[name] = [int(value) for value in recording[name]]
     return cells
 
 

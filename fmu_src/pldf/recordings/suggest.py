@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 from ..files.tables import Column, Format
 from ..kernel.codes import MODE
 from ..toml_file import shown
-from .columns import RECORDING
+from .columns import LABORATORY
 from .inputs import Input, open_input
 from .mapping import map_bytes, ready_maps
 from .matching import fits
@@ -85,7 +85,7 @@ def suggest_map(path: str | os.PathLike[str]) -> str:
     if ready := [name for name, known in ready_maps().items() if fits(file, known)]:
         said = f"# The ready map {ready[0]} fits {file.path.name}: --map {ready[0]} reads it.\n"
         return said + map_bytes(ready[0]).decode("utf-8")
-    guesses = {column.name: _guess(column, file) for column in RECORDING.columns}
+    guesses = {column.name: _guess(column, file) for column in LABORATORY.columns}
     return "\n".join(
         [
             f"# Mapping file for recordings such as {file.path.name}.",
@@ -94,8 +94,8 @@ def suggest_map(path: str | os.PathLike[str]) -> str:
             *_listed("# Columns of the file", [*dict.fromkeys(file.names)]),
             "",
             "[recording]",
-            *(line for c in RECORDING.columns for line in _column(c, guesses[c.name])),
-            *_words(file, RECORDING.columns, guesses),
+            *(line for c in LABORATORY.columns for line in _column(c, guesses[c.name])),
+            *_words(file, LABORATORY.columns, guesses),
             "",
         ]
     )

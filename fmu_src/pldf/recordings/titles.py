@@ -6,14 +6,14 @@ from dataclasses import replace
 
 from ..files.tables import meant_names, misspelt, told_meant, told_misspelt
 from ..findings import Finding
-from .columns import RECORDING
+from .columns import LABORATORY, RECORDING
 from .inputs import Input
 from .mapping import RecordingMap, Source
 
 
 def with_meant_names(file: Input, mapping: RecordingMap, notes: list[Finding]) -> RecordingMap:
     """Return ``mapping`` with titles that are our names but for capitals; tell what is alike."""
-    ours = [column.name for column in RECORDING.columns if column.name not in mapping.columns]
+    ours = [column.name for column in LABORATORY.columns if column.name not in mapping.columns]
     meant = meant_names(file.names, ours)
     for title, name in meant.items():
         notes.append(Finding("note", str(file.path), 0, name, told_meant(title, name)))

@@ -46,9 +46,7 @@ def format_of(found: list[Found], mapping: RecordingMap) -> Format:
 
 def _words(ours: Column, mapping: RecordingMap) -> Mapping[str, float]:
     """Return what stands for what in a column of texts; empty if the reader of tables knows."""
-    if ours.kind == "word":
-        return mapping.modes
-    return mapping.flags if ours.kind == "flag" else {}
+    return {"mode": mapping.modes, "eligible": mapping.flags}.get(ours.name, {})
 
 
 def numbers_of(table: Table, found: list[Found], mapping: RecordingMap) -> dict[str, FloatArray]:

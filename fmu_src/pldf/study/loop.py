@@ -66,6 +66,30 @@ class Rows(NamedTuple):
     base_mps: Floats
     learned_delta_mps: Floats
     limit_mps: Floats
+    eligible: Floats
+    vehicle_x_m: Floats
+    vehicle_y_m: Floats
+    lever_resume: Floats
+    lever_cancel: Floats
+    lever_up: Floats
+    lever_down: Floats
+    lever_up_long: Floats
+    lever_down_long: Floats
+    teach_pause: Floats
+    teach_forget_here: Floats
+    teach_undo: Floats
+    lead_present: Floats
+    lead_gap_m: Floats
+    lead_speed_mps: Floats
+    limit_override_mps: Floats
+    acceleration_request_mps2: Floats
+    hmi_reason: Floats
+    hmi_event: Floats
+    hmi_learned_in_drives: Floats
+    hmi_confidence: Floats
+    hmi_take_over: Floats
+    following_limits: Floats
+    following_time_gap_s: Floats
 
 
 def run_drive(models: Models, arrays: ModelArrays, ends: Ends, rows: Rows) -> tuple[int, int]:
@@ -142,3 +166,27 @@ def _write_row(models: Models, rows: Rows, k: int) -> None:
     rows.base_mps[k] = models.pldf.base_speed_mps
     rows.learned_delta_mps[k] = models.pldf.hmi_learned_delta_mps
     rows.limit_mps[k] = models.pldf.limit_mps
+    rows.eligible[k] = models.pldf.eligible
+    rows.vehicle_x_m[k] = models.pldf.vehicle_x_m
+    rows.vehicle_y_m[k] = models.pldf.vehicle_y_m
+    rows.lever_resume[k] = models.driver.lever_resume
+    rows.lever_cancel[k] = models.driver.lever_cancel
+    rows.lever_up[k] = models.driver.lever_up
+    rows.lever_down[k] = models.driver.lever_down
+    rows.lever_up_long[k] = models.driver.lever_up_long
+    rows.lever_down_long[k] = models.driver.lever_down_long
+    rows.teach_pause[k] = models.pldf.teach_pause
+    rows.teach_forget_here[k] = models.pldf.teach_forget_here
+    rows.teach_undo[k] = models.pldf.teach_undo
+    rows.lead_present[k] = models.pldf.lead_present
+    rows.lead_gap_m[k] = models.pldf.lead_gap_m
+    rows.lead_speed_mps[k] = models.pldf.lead_speed_mps
+    rows.limit_override_mps[k] = models.pldf.limit_override_mps
+    rows.acceleration_request_mps2[k] = models.pldf.acceleration_request_mps2
+    rows.hmi_reason[k] = models.pldf.hmi_reason
+    rows.hmi_event[k] = models.pldf.hmi_event
+    rows.hmi_learned_in_drives[k] = models.pldf.hmi_learned_in_drives
+    rows.hmi_confidence[k] = models.pldf.hmi_confidence
+    rows.hmi_take_over[k] = models.pldf.hmi_take_over
+    rows.following_limits[k] = models.pldf.following_limits
+    rows.following_time_gap_s[k] = models.pldf.following_time_gap_s

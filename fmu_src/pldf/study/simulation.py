@@ -277,5 +277,4 @@ def _recording(rows: Rows, steps: int, step_s: float) -> Recording:
     }
     columns["profile_mps"] = columns["base_mps"] + columns.pop("learned_delta_mps")
     columns["time_s"] = np.arange(float(steps)) * step_s
-    columns["eligible"] = np.ones(steps)
     return Recording({name: columns[name] for name in COLUMNS})

@@ -8,14 +8,13 @@ from __future__ import annotations
 from typing import Any, Final
 
 from ...compiled import KERNEL_MODULES
-from ...function import BOUNDS, Files
-from ...function_words import INPUT_TEXT
+from ...function import BOUNDS, WATCHES, Files
 from ...kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from ...kernel.drive import drive_step, refresh
 from ...kernel.learning import learn_drive
 from ...kernel.preparation import adopt_learned, start_drive
 from ...kernel.state import PldfState
-from .model import NativeModel, Watch
+from .model import NativeModel
 from .pointers import columns, record_at
 
 PROFILE_AT: Final = len(RouteArrays._fields)
@@ -83,6 +82,6 @@ MODEL: Final = NativeModel(
     groups=(RouteArrays, ProfileArrays, TraceArrays, Work, NextArrays),
     kept=3,
     route=RouteArrays,
-    watch=Watch("input_state", tuple(INPUT_TEXT[code] for code in sorted(INPUT_TEXT))),
+    watches=WATCHES,
     bounds=BOUNDS,
 )

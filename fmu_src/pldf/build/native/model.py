@@ -9,23 +9,7 @@ from typing import Any
 
 import numpy as np
 
-
-@dataclass(frozen=True)
-class Watch:
-    """A field of the record whose changes the user is told about.
-
-    Attributes:
-        field: name of an integer field; 0 is the normal value.
-        texts: one per value.
-        once: told once per drive, by the first step that meets it; else with the time, on each
-            change.
-        flag: field that is set to 1 once it was told, empty without ``once``.
-    """
-
-    field: str
-    texts: tuple[str, ...]
-    once: bool = False
-    flag: str = ""
+from ...instance import Watch
 
 
 @dataclass(frozen=True)
@@ -50,7 +34,7 @@ class NativeModel:
         route_if: field and value that ask for a route; an empty field: always.
         events: named tuple of arrays per line of a script, None without scripts.
         events_if: field and value that ask for a script.
-        watch: what the user is told about while driving.
+        watches: what the user is told about while driving.
         bounds: pairs of Real parameters; the first, a bound, must not be weaker than the second.
     """
 
@@ -63,7 +47,7 @@ class NativeModel:
     groups: tuple[type[Any], ...]
     kept: int
     route: type[Any]
-    watch: Watch
+    watches: tuple[Watch, ...]
     route_if: tuple[str, int] = ("", 0)
     events: type[Any] | None = None
     events_if: tuple[str, int] = ("", 0)

@@ -10,10 +10,12 @@ from dataclasses import fields
 from math import inf
 from typing import Any, Final
 
+from ... import own_recording
 from ...driver_words import LEARNED
 from ...fmi.phases import Phase
 from ...fmi.session import STEP_MAX_S
 from ...function_words import OLDER_READING
+from ...instance import Watch
 from ...kernel.arrays import NextArrays, ProfileArrays, TraceArrays
 from ...kernel.codes import (
     BOUND,
@@ -24,18 +26,21 @@ from ...kernel.codes import (
     OUTCOME,
     PROFILE_STATUS,
 )
-from ...kernel.ranges import LAST_NODE, NODES, Range, columns_of, ranges_of
 from ...kernel.sentences import EVENT_SENTENCES, EVENTS, NUMBERS, REASONS
 from ...kernel.signals import Signal, by_reference, parameters_of, time_reference, variables_of
 from ...kernel.units import KMH_PER_MPS
 from ...outcome_words import BOUND_WORDS, HOLDS_TOLD, TEXTS, TRANSITION_MIN_M
 from ...outcomes import SAME_OFFSET_MPS
+from ...own_recording import COLUMNS as RECORDED
+from ...own_recording import HEAD_FIELDS
 from ...profiles.file_parts import ALIGNMENT, CHECKSUM_SIZE, COLUMNS, NODES_MAX, Column
 from ...profiles.older_reading import ALIKE_MPS, ALIKE_SHARE, LENGTH_SHARE
 from ...profiles.profile_format_1 import COLUMNS_1
 from ...profiles.stored_profile import KINDS
 from ...roads.marks import KIND_WORDS, NAME_BYTES_MAX
+from .c_source import literal, number
 from .model import NativeModel
+from .range_table import cell_ranges, column_ranges
 
 _KINDS: Final = {
     "Real": "KIND_REAL",
@@ -80,6 +85,7 @@ def header(model: NativeModel) -> str:
     """Return ``table.h``: the sizes and codes that the compiler must know."""
     sizes = {
         "MODEL_CELLS": len(fields(model.record)),
+        "WATCHES": len(model.watches),
         "MODEL_TEXTS": len(parameters_of(model.texts)),
         "REASON_COUNT": len(REASONS),
         "EVENT_COUNT": len(EVENTS),
@@ -115,10 +121,19 @@ def header(model: NativeModel) -> str:
         "LENGTH_SHARE": LENGTH_SHARE,
         "ALIKE_SHARE": ALIKE_SHARE,
         "ALIKE_MPS": ALIKE_MPS,
+        "RECORDING_ROW_S": own_recording.ROW_S,
+        "RECORDING_ROWS_MAX": own_recording.ROWS_BETWEEN_MAX,
     }
-    lines += [f"#define {name} {_number(value)}" for name, value in numbers.items()]
-    texts = {**TEXTS, "OLDER_READING": OLDER_READING}
-    lines += [f"#define TEXT_{name} {_text(text)}" for name, text in texts.items()]
+    lines += [f"#define {name} {number(value)}" for name, value in numbers.items()]
+    lines.append(f"#define RECORDING_VARIABLE {literal(own_recording.FOLDER_VARIABLE)}")
+    recording = {
+        "RECORDING_HEAD": own_recording.HEAD,
+        "RECORDING_WRITTEN": own_recording.WRITTEN,
+        "RECORDING_NOT_WRITTEN": own_recording.NOT_WRITTEN,
+        "RECORDING_NOT_WRITABLE": own_recording.NOT_WRITABLE,
+    }
+    texts = {**TEXTS, **recording, "OLDER_READING": OLDER_READING}
+    lines += [f"#define TEXT_{name} {literal(text)}" for name, text in texts.items()]
     return "\n".join([*lines, ""])
 
 
@@ -131,9 +146,11 @@ def source(model: NativeModel, guid: str, token: str) -> str:
     lines += ["", "static const Cell defaults[] = {"]
     lines += [f"    {_cell(f.default)}, /* {f.name} */" for f in fields(model.record)]
     lines += ["};"]
-    lines += _array("static const Range ranges", _cell_ranges(model, cells))
-    lines += _array("static const Range column_ranges", _column_ranges(model))
-    lines += _texts("static const char *const watch_texts", model.watch.texts)
+    lines += _array("static const Range ranges", cell_ranges(model, cells))
+    lines += _array("static const Range column_ranges", column_ranges(model))
+    for at, watch in enumerate(model.watches):
+        lines += _array(f"static const Said said_{at}", _said(watch))
+    lines += _array("static const Watch watches", _watches(model, cells))
     lines += _texts("const char *const phase_names", (phase.name for phase in Phase))
     lines += _array("const ProfileColumn profile_columns", map(_column, COLUMNS))
     lines += _texts("const char *const profile_kinds", KINDS)
@@ -143,6 +160,7 @@ def source(model: NativeModel, guid: str, token: str) -> str:
     )
     learning = "learn" in model.entries
     if learning:
+        lines += _recorded(model)
         lines += _array("static const Bound bounds", (_references(p, model) for p in model.bounds))
         lines += _struct("static const Learning learning", _learning(model, cells))
     cluster = "hmi_sentence" in cells
@@ -151,7 +169,7 @@ def source(model: NativeModel, guid: str, token: str) -> str:
             lines += _texts(f"static const char *const {name}_en", (r.english for r in rows))
             lines += _texts(f"static const char *const {name}_de", (r.german for r in rows))
         lines += _struct("static const Cluster cluster", _cluster(cells))
-    tokens = {"guid": _text(guid), "token": _text(token)}
+    tokens = {"guid": literal(guid), "token": literal(token)}
     pointer = {
         "learning": "&learning" if learning else "NULL",
         "cluster": "&cluster" if cluster else "NULL",
@@ -165,7 +183,7 @@ def _array(name: str, rows: Iterable[Iterable[str]]) -> list[str]:
 
 
 def _texts(name: str, texts: Iterable[str]) -> list[str]:
-    return ["", f"{name}[] = {{", *(f"    {_text(text)}," for text in texts), "};"]
+    return ["", f"{name}[] = {{", *(f"    {literal(text)}," for text in texts), "};"]
 
 
 def _struct(name: str, members: Iterable[tuple[str, str]]) -> list[str]:
@@ -177,10 +195,10 @@ def _column_at(name: str) -> int:
 
 
 def _column(column: Column) -> Iterator[str]:
-    yield _text(column.name)
-    yield _text(column.unit)
-    yield _number(column.low)
-    yield _number(column.high)
+    yield literal(column.name)
+    yield literal(column.unit)
+    yield number(column.low)
+    yield number(column.high)
     yield str(int(column.whole))
 
 
@@ -189,53 +207,24 @@ def signals(model: NativeModel) -> tuple[Signal, ...]:
     return variables_of(model.record, model.texts)
 
 
-def _cell_ranges(model: NativeModel, cells: list[str]) -> Iterator[Iterable[str]]:
-    """Yield what each cell of a restored state may hold."""
-    ranges = ranges_of(model.record)
-    watched = ranges[model.watch.field]
-    if watched != Range(0, len(model.watch.texts) - 1):
-        raise ValueError(f"{model.watch.field}: {watched} does not fit the texts of the watch")
-    for spec in fields(model.record):
-        kind = "KIND_INTEGER" if isinstance(spec.default, int) else "KIND_REAL"
-        allowed = ranges[spec.name]
-        yield _range(kind, allowed, cells) if allowed is not None else _range("0", Range(), cells)
-
-
-def _column_ranges(model: NativeModel) -> Iterator[Iterable[str]]:
-    """Yield what each kept column may hold: those per node, then those per line of a script."""
-    events = (model.events,) if model.events is not None else ()
-    for group in (*model.groups[: model.kept], *events):
-        for allowed in columns_of(group):
-            yield _range("KIND_REAL", allowed, [])
-
-
-def _range(kind: str, allowed: Range, cells: list[str]) -> Iterator[str]:
-    places = {"": "NOWHERE", NODES: "NODES", LAST_NODE: "LAST_NODE"}
-    yield kind
-    yield _number(allowed.low)
-    yield _number(allowed.high)
-    yield places.get(allowed.at_most) or str(cells.index(allowed.at_most))
-    yield places.get(allowed.plus) or str(cells.index(allowed.plus))
-
-
 def _variables(model: NativeModel) -> list[Iterable[str]]:
     """Return one row per value reference; ``time``, which only FMI 3.0 asks for, is among them."""
     known = signals(model)
     rows: list[Iterable[str]] = [_variable(signal, model) for signal in known]
-    time = ('"time"', "KIND_TIME", "INDEPENDENT", "0", "0", _number(-inf), _number(inf))
+    time = ('"time"', "KIND_TIME", "INDEPENDENT", "0", "0", number(-inf), number(inf))
     rows.insert(time_reference(known), time)
     return rows
 
 
 def _variable(signal: Signal, model: NativeModel) -> Iterator[str]:
-    yield _text(signal.name)
+    yield literal(signal.name)
     yield _KINDS[signal.kind]
     yield signal.causality.upper()
     yield str(int(signal.tunable))
     yield str(_place(signal, model))
     low, high = signal.range
-    yield _number(low)
-    yield _number(high)
+    yield number(low)
+    yield number(high)
 
 
 def _place(signal: Signal, model: NativeModel) -> int:
@@ -249,6 +238,20 @@ def _place(signal: Signal, model: NativeModel) -> int:
 def _references(names: tuple[str, ...], model: NativeModel) -> Iterator[str]:
     known = {signal.field: reference for reference, signal in by_reference(signals(model)).items()}
     return (str(known[name]) for name in names)
+
+
+def _said(watch: Watch) -> Iterator[Iterable[str]]:
+    """Yield level and text of each value."""
+    for value, text in enumerate(watch.texts):
+        yield ("INFO" if value in watch.quiet else "WARNING", literal(text))
+
+
+def _watches(model: NativeModel, cells: list[str]) -> Iterator[Iterable[str]]:
+    for at, watch in enumerate(model.watches):
+        flag = cells.index(watch.flag) if watch.once else -1
+        time = 0 if watch.once else cells.index("time_ns")
+        field = cells.index(watch.field)
+        yield (*map(str, (field, flag, time, len(watch.texts))), f"said_{at}")
 
 
 def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
@@ -272,11 +275,7 @@ def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
     yield "script_id", str(cells.index("script_id") if model.events else 0)
     yield "route_text", str(texts.index("route_file"))
     yield "script_text", str(texts.index("script_file") if model.events else -1)
-    yield "watch", str(cells.index(model.watch.field))
-    yield "watch_flag", str(cells.index(model.watch.flag) if model.watch.once else -1)
-    yield "watch_time", str(0 if model.watch.once else cells.index("time_ns"))
-    yield "watch_texts", "watch_texts"
-    yield "watch_count", str(len(model.watch.texts))
+    yield "watches", "watches"
 
 
 def _learning(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
@@ -285,6 +284,11 @@ def _learning(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]
     yield "learn", "model_learn"
     yield "bounds", "bounds"
     yield "bound_count", str(len(model.bounds))
+    yield "recorded", "recorded"
+    yield "recorded_count", str(len(RECORDED))
+    yield "head", "head"
+    yield "head_count", str(len(HEAD_FIELDS))
+    yield "recording_text", str(texts.index("recording_folder"))
     yield "store_text", str(texts.index("profile_store"))
     asked = (cells.index(name) for name in ("learn", "learn_faithful", "learn_consistent"))
     yield "learn_if", f"{{{', '.join(map(str, asked))}}}"
@@ -302,21 +306,24 @@ def _cluster(cells: list[str]) -> Iterator[tuple[str, str]]:
     yield "events", "{events_en, events_de}"
     yield "sentence", str(cells.index("hmi_sentence"))
     yield "language", str(cells.index("hmi_language"))
-    yield "names", f"{{{', '.join(_text(f'{{{name}}}') for name in NUMBERS)}}}"
+    yield "names", f"{{{', '.join(literal(f'{{{name}}}') for name in NUMBERS)}}}"
     places = (str(cells.index(f"hmi_sentence_{name}")) for name in NUMBERS)
     yield "numbers", f"{{{', '.join(places)}}}"
 
 
+def _recorded(model: NativeModel) -> list[str]:
+    """Return the columns and the head of the function's own recording."""
+    lines, columns = [], []
+    for column in RECORDED:
+        words = f"words_of_{column.name}" if column.words else "NULL"
+        if column.words:
+            lines += _texts(f"static const char *const {words}", column.words)
+        at = model.first(column.group, column.field) if column.group else -1
+        columns.append((literal(column.name), str(at), words, str(len(column.words))))
+    head = ", ".join(_references(HEAD_FIELDS, model))
+    lines += _array("static const RecordedColumn recorded", columns)
+    return [*lines, "", f"static const int32_t head[] = {{{head}}};"]
+
+
 def _cell(value: Any) -> str:
-    return f"{{.integer = {value}}}" if isinstance(value, int) else f"{{.real = {_number(value)}}}"
-
-
-def _number(value: float) -> str:
-    if abs(value) == inf:
-        return "INFINITY" if value > 0 else "-INFINITY"
-    return float(value).hex()
-
-
-def _text(text: str) -> str:
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
-    return f'"{escaped}"'
+    return f"{{.integer = {value}}}" if isinstance(value, int) else f"{{.real = {number(value)}}}"

@@ -154,3 +154,19 @@ void disk_unlock(Lock *lock) {
     os_close(lock->file);
     if (os_refuses_open_files) os_remove(lock->path); /* refused if another has it open, and uses it */
 }
+
+void disk_nearest(const char *folder, char *nearest) {
+    snprintf(nearest, PATH_SIZE, "%s", folder);
+    while (os_entry(nearest) == NO_ENTRY)
+        if (!disk_parent(nearest)) return;
+}
+
+bool disk_writable(const char *folder, char *part, char *why) {
+    Lock lock;
+    disk_nearest(folder, part);
+    if (os_entry(part) == OTHER_ENTRY) return fail(why, "not a folder");
+    /* The lock is made as any file is; and one that somebody left would be in the way. */
+    LockResult result = disk_lock(part, 0, &lock, why);
+    if (result == LOCK_DONE) disk_unlock(&lock);
+    return result != LOCK_FAILED;
+}

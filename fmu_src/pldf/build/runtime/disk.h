@@ -19,6 +19,9 @@ bool disk_replace(const char *path, const uint8_t *bytes, int64_t size, const ch
 bool disk_rename(const char *from, const char *to, char *why);
 bool disk_parent(char *path); /* cuts the last name off, unless nothing is left then */
 bool disk_make_folder(const char *path, char *why); /* with those above it */
+void disk_nearest(const char *folder, char *nearest); /* the folder, or the first above it that is there */
 typedef enum { LOCK_DONE, LOCK_HELD, LOCK_FAILED } LockResult;
 LockResult disk_lock(const char *folder, int patience_ms, Lock *lock, char *why);
 void disk_unlock(Lock *lock);
+/* Tries to write in the folder, or where it would be made (`part`), without leaving anything. */
+bool disk_writable(const char *folder, char *part, char *why);

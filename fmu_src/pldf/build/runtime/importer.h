@@ -5,10 +5,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "model.h"
 #include "os.h"
 
 enum { MESSAGE_SIZE = 3 * PATH_SIZE };
-typedef enum { INFO = 0, WARNING = 1, ERROR_LEVEL = 3 } Level; /* numbers of FMI's status */
 
 typedef struct Importer Importer;
 struct Importer { /* its logger, as it came, and the function that calls it by this version of FMI */

@@ -67,6 +67,7 @@ void learning_follow(const Importer *importer, State *state, Run *run) {
     const Learning *l = model.learning;
     Profile *p = &run->stored;
     if (!l) return;
+    recording_open(importer, state, run);
     p->driver = state->record[l->driver_id].integer;
     p->nodes = state->nodes;
     state->record[l->profile_status].integer = load_profile(importer, state, run);

@@ -40,10 +40,20 @@ typedef struct { /* value references of two Real parameters */
     int32_t allowed, used;
 } Bound;
 
+typedef struct { /* of the function's own recording */
+    const char *name;
+    int32_t column; /* of the block */
+    const char *const *words; /* of codes, `count` of them; 0: numbers */
+    int32_t count;
+} RecordedColumn;
+
 typedef struct { /* what only a model that learns has: cells, texts and columns */
     Entry *adopt, *learn;
     const Bound *bounds; /* of every profile; none may be weaker than what is used */
     int32_t bound_count;
+    const RecordedColumn *recorded;
+    const int32_t *head; /* value references of what stands in the recording's head */
+    int32_t recorded_count, head_count, recording_text;
     int32_t store_text, driver_id, apply_learned, learn_if[3], localization;
     int32_t first_node, nodes, intervening, interventions, profile_iteration, profile_status;
     int32_t set_series, holds, places, speed_min, accept;
@@ -56,6 +66,19 @@ typedef struct { /* what only a model that speaks has: sentences per language, a
     const char *names[SENTENCE_NUMBERS]; /* of the numbers, as they stand in a sentence */
     int32_t numbers[SENTENCE_NUMBERS];
 } Cluster;
+
+typedef enum { INFO = 0, WARNING = 1, ERROR_LEVEL = 3 } Level; /* numbers of FMI's status */
+
+typedef struct {
+    Level level;
+    const char *text;
+} Said;
+
+typedef struct { /* a cell whose changes the user is told about */
+    int32_t cell, flag, time; /* the flag's is -1 unless it is told once per drive */
+    int32_t count;
+    const Said *said; /* of each value, `count` of them */
+} Watch;
 
 typedef struct {
     const char *guid, *token; /* of FMI 2.0, of FMI 3.0 */
@@ -70,10 +93,7 @@ typedef struct {
     int64_t route_if_value, script_if_value;
     int32_t route_id, script_id;     /* cells */
     int32_t route_text, script_text; /* index of the String parameters, -1: none */
-    /* what the user is told about: cell, its texts, cell of the flag or -1, cell of the time */
-    int32_t watch, watch_flag, watch_time;
-    const char *const *watch_texts;
-    int32_t watch_count;
+    const Watch *watches; /* WATCHES of them */
     const Learning *learning; /* NULL: it does not learn */
     const Cluster *cluster;   /* NULL: it does not speak */
 } Model;

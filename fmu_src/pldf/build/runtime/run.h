@@ -8,7 +8,7 @@
 typedef struct { /* what is saved and restored, followed by the kept columns */
     char guid[40];
     int64_t size; /* in bytes, with the columns */
-    int64_t nodes, rows, phase, ready, stale, told;
+    int64_t nodes, rows, phase, ready, stale, told[WATCHES];
     double time;
     char texts[MODEL_TEXTS][PATH_SIZE];
     Cell record[MODEL_CELLS];
@@ -19,6 +19,7 @@ typedef struct { /* what follows from the parameters */
     Profile stored;
     char *marks; /* of the route, a line each (prepared.h); NULL: there are none */
     char folder[PATH_SIZE]; /* of profiles; empty: nothing is persisted */
+    char recordings[PATH_SIZE]; /* folder of recordings; empty: none is written */
 } Run;
 
 /* Makes the run that follows from a state's parameters, and the rest of that state. */
@@ -30,6 +31,9 @@ void run_release(Run *run);
 /* Of models that learn (learning.c); the others allow everything, follow and keep nothing. */
 bool learning_allows(const Importer *importer, const State *state); /* the parameters */
 void learning_follow(const Importer *importer, State *state, Run *run);
+/* The function's own recording (recording.c): finds its folder; writes it, or tells why not. */
+void recording_open(const Importer *importer, const State *state, Run *run);
+Level recording_save(const Importer *importer, const State *state, const Run *run);
 /* One line per intervention of a drive that was learned from: what became of it (outcome.c). */
 void outcome_tell(const Importer *importer, const State *state, const Run *run);
 /* Of a drive that ends, and that ended `before`; INFO, or what was told of what could not be kept. */

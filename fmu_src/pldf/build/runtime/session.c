@@ -43,17 +43,18 @@ Session *session_new(const char *name, const char *resources, bool events, const
 /* The run */
 
 /* Called by steps alone: what is told does not depend on who read an output before. */
-static void watch(Session *s) {
+static void watch(Session *s, const Watch *watched, int64_t *told) {
     Cell *record = s->state.record;
-    int64_t now = record[model.watch].integer;
-    if (model.watch_flag >= 0) { /* once per drive */
-        if (!now || record[model.watch_flag].integer) return;
-        record[model.watch_flag].integer = 1;
-        importer_tell(&s->importer, WARNING, "%s", model.watch_texts[now]);
-    } else if (now != s->state.told) {
-        s->state.told = now;
-        importer_tell(&s->importer, now ? WARNING : INFO, "t = %.3f s: %s",
-                      1e-9 * (double)record[model.watch_time].integer, model.watch_texts[now]);
+    int64_t now = record[watched->cell].integer;
+    const Said *said = &watched->said[now];
+    if (watched->flag >= 0) { /* once per drive */
+        if (!now || record[watched->flag].integer) return;
+        record[watched->flag].integer = 1;
+        importer_tell(&s->importer, said->level, "%s", said->text);
+    } else if (now != *told) {
+        *told = now;
+        importer_tell(&s->importer, said->level, "t = %.3f s: %s",
+                      1e-9 * (double)record[watched->time].integer, said->text);
     }
 }
 
@@ -66,7 +67,8 @@ static bool start_run(Session *s) {
     s->run = run;
     s->state = fresh;
     s->state.ready = s->prepared = true;
-    s->state.stale = s->state.told = 0;
+    s->state.stale = 0;
+    memset(s->state.told, 0, sizeof s->state.told);
     return true;
 }
 
@@ -132,14 +134,15 @@ bool session_step(Session *s, double time, double step_s) {
     run_call(model.step, &s->state, &s->run, step_s);
     s->state.time = time + step_s;
     s->state.stale = 0;
-    watch(s);
+    for (int i = 0; i < WATCHES; i++) watch(s, &model.watches[i], &s->state.told[i]);
     return true;
 }
 
 static Level finish(Session *s) {
+    Level kept = s->finished ? INFO : recording_save(&s->importer, &s->state, &s->run);
     Level level = learning_finish(&s->importer, &s->state, &s->run, s->finished);
     s->finished = true;
-    return level;
+    return level > kept ? level : kept;
 }
 
 Level session_terminate(Session *s) {

@@ -110,11 +110,17 @@ static bool has_sound_size(const State *state) {
            state->size == size + 8 * kept_values(state->nodes, state->rows);
 }
 
+static bool has_sound_watches(const State *state) {
+    for (int i = 0; i < WATCHES; i++)
+        if (!within(state->told[i], 0, model.watches[i].count - 1)) return false;
+    return true;
+}
+
 static bool has_sound_head(const State *state) {
     for (int i = 0; i < MODEL_TEXTS; i++)
         if (!memchr(state->texts[i], 0, PATH_SIZE)) return false;
     return within(state->phase, INSTANTIATED, TERMINATED) && within(state->ready, 0, 1) &&
-           within(state->stale, 0, 1) && within(state->told, 0, model.watch_count - 1) &&
+           within(state->stale, 0, 1) && has_sound_watches(state) &&
            (isfinite(state->time) || (!is_whole(state) && state->time == -INFINITY));
 }
 

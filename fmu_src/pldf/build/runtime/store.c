@@ -54,17 +54,10 @@ static bool free_name(const char *stem, const char *kind, const char *end, char 
     return false;
 }
 
-/* The folder, or the first above it that is there. */
-static void nearest_entry(const char *folder, char *nearest) {
-    snprintf(nearest, PATH_SIZE, "%s", folder);
-    while (os_entry(nearest) == NO_ENTRY)
-        if (!disk_parent(nearest)) return;
-}
-
 /* A file in the place of the folder means that nothing can ever be saved. */
 static bool can_be_folder(const Importer *importer, const char *folder) {
     char part[PATH_SIZE];
-    nearest_entry(folder, part);
+    disk_nearest(folder, part);
     if (os_entry(part) != OTHER_ENTRY) return true;
     importer_tell(importer, WARNING, "%s: not a folder; choose another profile store", part);
     return false;
@@ -72,15 +65,10 @@ static bool can_be_folder(const Importer *importer, const char *folder) {
 
 bool store_writable(const Importer *importer, const char *folder) {
     char part[PATH_SIZE], why[REASON_SIZE];
-    Lock lock;
-    nearest_entry(folder, part);
-    /* The lock is made as any file is; and one that somebody left would be in the way. */
-    LockResult result = disk_lock(part, 0, &lock, why);
-    if (result == LOCK_DONE) disk_unlock(&lock);
-    if (result == LOCK_FAILED)
-        importer_tell(importer, WARNING, "what this drive teaches cannot be saved: %s: cannot be written "
+    if (disk_writable(folder, part, why)) return true;
+    importer_tell(importer, WARNING, "what this drive teaches cannot be saved: %s: cannot be written "
                       "to (%s); make it writable, or choose another profile store", part, why);
-    return result != LOCK_FAILED;
+    return false;
 }
 
 /* Under the lock: somebody may have dealt with it meanwhile. */

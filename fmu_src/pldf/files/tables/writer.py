@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import chain
+from itertools import chain, repeat
 from pathlib import Path
 from typing import Final
 
@@ -62,9 +62,19 @@ def write_table(
 
 
 def _texts(cells: Sequence[Cell] | FloatArray) -> Iterable[str]:
+    if len(cells) > 1 and _is_constant(cells):
+        return repeat(next(iter(_texts(cells[:1]))), len(cells))
     if isinstance(cells, np.ndarray):
         return map(repr, cells.tolist())
     return map(_text, cells)
+
+
+def _is_constant(cells: Sequence[Cell] | FloatArray) -> bool:
+    if isinstance(cells, np.ndarray):
+        # Bits, not values: a zero may have a sign.
+        bits = cells.view(np.int64) if cells.dtype == np.float64 else cells
+        return bool(np.all(bits == bits[0]))
+    return isinstance(cells[0], str) and all(cell == cells[0] for cell in cells)
 
 
 def _text(cell: Cell) -> str:
