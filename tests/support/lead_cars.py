@@ -6,12 +6,14 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from laboratory import Array, PointMass, driving, road
+from laboratory import Array, PointMass, function, road
+from pldf.kernel.codes import ACTIVE
 from pldf.roads import Route
 
 STEP_S = 0.02
 LAG_S = 0.2
 STANDSTILL_M, TIME_GAP_S = 3.0, 1.8  # the desired gap: standstill + time gap * speed
+LONG_ROAD = road(5000.0, ((0.0, 130.0 / 3.6),))
 
 
 class Motion(NamedTuple):
@@ -43,10 +45,15 @@ def desired_gap_m(speed_mps: float) -> float:
     return STANDSTILL_M + TIME_GAP_S * speed_mps
 
 
-def follower(speed_mps: float, route: Route | None = None, **settings: float) -> PointMass:
-    """A car with the function active, on 20 km at 100 km/h unless a road is given."""
-    car = driving(route or road(20_000.0), speed_mps, **settings)
-    car.lag_s = LAG_S
+def follower(
+    speed_mps: float, s_m: float = 0.0, route: Route = LONG_ROAD, **settings: float
+) -> PointMass:
+    """A car at ``s_m`` that drives steadily, with the function active."""
+    car = PointMass(function(route, **settings), speed_mps, LAG_S)
+    car.s_m = s_m
+    car.step(0.001, lever_resume=1)
+    car.made.record.lever_resume = 0
+    assert car.made.record.mode == ACTIVE
     car.speed_mps, car.acceleration_mps2 = speed_mps, 0.0
     car.made.record.acceleration_request_mps2 = 0.0
     return car
@@ -80,22 +87,23 @@ def platoon(
     seconds: float,
     cars: int = 10,
     lags_s: tuple[float, ...] = (LAG_S,),
+    step_s: float = STEP_S,
     **settings: float,
 ) -> Array:
     """Speeds of a lead and ``cars`` behind it, one row per sample; all begin at the desired gap."""
     start_mps = speed_at(0.0)
-    tail = [follower(start_mps, **settings) for _ in range(cars)]
+    places = [1000.0 - (k + 1) * desired_gap_m(start_mps) for k in range(cars)]
+    tail = [follower(start_mps, s_m, **settings) for s_m in places]
     for k, car in enumerate(tail):
         car.lag_s = lags_s[k % len(lags_s)]
-        car.s_m = 1000.0 - (k + 1) * desired_gap_m(start_mps)
     lead = Lead(1000.0, start_mps)
     rows = []
-    for k in range(round(seconds / STEP_S)):
-        t = k * STEP_S
+    for k in range(round(seconds / step_s)):
+        t = k * step_s
         rows.append([lead.speed_mps, *(car.speed_mps for car in tail)])
         ahead = [lead, *tail[:-1]]
         seen = [(a.s_m - car.s_m, a.speed_mps) for a, car in zip(ahead, tail, strict=True)]
         for car, (gap_m, lead_mps) in zip(tail, seen, strict=True):
-            car.step(STEP_S, lead_present=1, lead_gap_m=gap_m, lead_speed_mps=lead_mps)
-        lead.step((speed_at(t + STEP_S) - lead.speed_mps) / STEP_S)
+            car.step(step_s, lead_present=1, lead_gap_m=gap_m, lead_speed_mps=lead_mps)
+        lead.step((speed_at(t + step_s) - lead.speed_mps) / step_s, step_s)
     return np.array(rows)

@@ -26,6 +26,9 @@ def look_ahead(st: PldfState, route: RouteArrays, profile: ProfileArrays, step_s
     if st.input_state == INPUT_INVALID:  # whose gap is not known is not followed
         st.lead_counts = 0
         st.standing = 0
+        st.less_ns = -1
+        st.following_limits = 0
+        st.following_time_gap_s = 0.0
         tell_take_over(st, st.lead_present != 0 and st.mode == FAULT)
         return
     find_lead(st)
@@ -42,18 +45,22 @@ def find_lead(st: PldfState) -> None:
         st.lead_seen_ns = st.time_ns
         st.lead_ahead_m = st.lead_gap_m
         st.lead_mps = st.lead_speed_mps
-        speed = max(st.vehicle_speed_mps, 0.0)
-        gap_m = max(st.lead_gap_m, 0.0)  # below 0 they touch
-        time_gap_s = TIME_GAP_MAX_S
-        if gap_m < TIME_GAP_MAX_S * speed:
-            time_gap_s = gap_m / speed
-        st.following_time_gap_s = time_gap_s
+        st.following_time_gap_s = _time_gap(st.lead_gap_m, st.vehicle_speed_mps)
     elif st.lead_counts != 0:
         passed_s = 1e-9 * (st.time_ns - st.lead_ns)
         st.lead_ahead_m += (st.lead_mps - st.vehicle_speed_mps) * passed_s
         if st.time_ns - st.lead_seen_ns > 1e9 * st.following_lost_s:
             st.lead_counts = 0
     st.lead_ns = st.time_ns
+
+
+def _time_gap(gap_m: float, speed_mps: float) -> float:
+    """Return the time (s) in which a car drives through the gap, within 0 and the longest told."""
+    if gap_m <= 0.0:
+        return 0.0
+    if gap_m >= TIME_GAP_MAX_S * speed_mps:
+        return TIME_GAP_MAX_S
+    return gap_m / speed_mps
 
 
 def _update_limits(
