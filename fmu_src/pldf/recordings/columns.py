@@ -16,6 +16,10 @@ def _flags(*names: str) -> tuple[Column, ...]:
     return tuple(Column(name, "flag", needed=False) for name in names)
 
 
+def _counts(*names: str) -> tuple[Column, ...]:
+    return tuple(Column(name, "whole", low=0.0, needed=False) for name in names)
+
+
 # What any function in any car may have recorded.
 LABORATORY: Final = Format(
     "recording",
@@ -53,10 +57,12 @@ RECORDING: Final = replace(
         Column("acceleration_request_mps2", unit="m/s2", needed=False, **_MEASURED),
         Column("hmi_reason", "word", words=REASON.items, coded=True, needed=False),
         Column("hmi_event", "word", words=EVENT.items, coded=True, needed=False),
-        Column("hmi_learned_in_drives", "whole", low=0.0, needed=False),
+        *_counts("hmi_learned_in_drives"),
         Column("hmi_confidence", unit="1", needed=False),
         *_flags("hmi_take_over", "following_limits"),
         Column("following_time_gap_s", unit="s", needed=False),
+        *_counts("hmi_sentence", "hmi_sentence_speed", "hmi_sentence_base"),
+        *_counts("hmi_sentence_limit", "hmi_sentence_drive"),
     ),
 )
 COLUMNS: Final = RECORDING.names
@@ -101,5 +107,10 @@ OUTPUTS: Final = {
     "hmi_take_over": "hmi.take_over",
     "following_limits": "following.limits",
     "following_time_gap_s": "following.time_gap_s",
+    "hmi_sentence": "hmi.sentence",
+    "hmi_sentence_speed": "hmi.sentence_speed",
+    "hmi_sentence_base": "hmi.sentence_base",
+    "hmi_sentence_limit": "hmi.sentence_limit",
+    "hmi_sentence_drive": "hmi.sentence_drive",
 }
 LEARNED_DELTA: Final = "hmi.learned_delta_mps"  # added to base_mps it is profile_mps

@@ -41,6 +41,28 @@ INTERVENTIONS: Final = {
     "brake": ("Brake until reactivated", Fill(VERMILLION, 0.32, hatched=True)),
     "set_speed": ("Set speed changed", Fill(ORANGE, 0.9)),
 }
+# Why the car drives at its speed: by name of the reason what it is called and how it is shaded. One
+# colour for one kind of reason; a bound, or what only leads there, is hatched.
+REASONS: Final = {
+    "LIMIT": ("Speed limit", Fill(GREY, 0.45)),
+    "COASTING_TO_LIMIT": ("Limit ahead", Fill(GREY, 0.75, hatched=True)),
+    "CAP_LEGAL": ("At the bound over the limit", Fill(BLACK, 0.7, hatched=True)),
+    "TEMPORARY_LIMIT": ("Temporary limit", Fill(GREY, 0.9)),
+    "CURVE": ("Curve", Fill(ORANGE, 0.75)),
+    "CAP_CURVE": ("At the bound for curves", Fill(ORANGE, 0.9, hatched=True)),
+    "LEARNED_FASTER": ("Learned: faster", Fill(BLUE, 0.85)),
+    "LEARNED_SLOWER": ("Learned: slower", Fill(SKY, 0.85)),
+    "LEARNED_OFFSET": ("Learned: set speed", Fill(PURPLE, 0.8)),
+    "MANUAL_SET": ("Set by the driver", Fill(PURPLE, 0.35, hatched=True)),
+    "OVERRIDE": ("The driver, by gas", Fill(GREEN, 0.7)),
+    "SLOWING_DOWN": ("Slowing down", Fill(BLACK, 0.12, hatched=True)),
+    "SPEEDING_UP": ("Speeding up", Fill(BLACK, 0.12)),
+    "FOLLOWING": ("Car ahead", Fill(VERMILLION, 0.75)),
+    "HELD": ("Held behind a car", Fill(VERMILLION, 0.9, hatched=True)),
+    "STANDBY": ("Standby", Fill(BLACK, 0.06)),
+    "OFF": ("Off", Fill(BLACK, 0.06)),
+    "FAULT": ("Fault", Fill(BLACK, 0.9)),
+}
 
 
 _SERIES: Final[tuple[tuple[str, Dash, Mark], ...]] = (

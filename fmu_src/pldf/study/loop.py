@@ -90,6 +90,11 @@ class Rows(NamedTuple):
     hmi_take_over: Floats
     following_limits: Floats
     following_time_gap_s: Floats
+    hmi_sentence: Floats
+    hmi_sentence_speed: Floats
+    hmi_sentence_base: Floats
+    hmi_sentence_limit: Floats
+    hmi_sentence_drive: Floats
 
 
 def run_drive(models: Models, arrays: ModelArrays, ends: Ends, rows: Rows) -> tuple[int, int]:
@@ -190,3 +195,8 @@ def _write_row(models: Models, rows: Rows, k: int) -> None:
     rows.hmi_take_over[k] = models.pldf.hmi_take_over
     rows.following_limits[k] = models.pldf.following_limits
     rows.following_time_gap_s[k] = models.pldf.following_time_gap_s
+    rows.hmi_sentence[k] = models.pldf.hmi_sentence
+    rows.hmi_sentence_speed[k] = models.pldf.hmi_sentence_speed
+    rows.hmi_sentence_base[k] = models.pldf.hmi_sentence_base
+    rows.hmi_sentence_limit[k] = models.pldf.hmi_sentence_limit
+    rows.hmi_sentence_drive[k] = models.pldf.hmi_sentence_drive

@@ -15,6 +15,7 @@ from ...recordings.interventions import Interval, pedal_interventions, set_speed
 from ...recordings.recording import Recording
 from .. import palette
 from ..scene import Axis, Band, Box, Boxes, Element, Fill, Line, Panel, Scene, Stroke, Tick
+from .reasons import reason_panels
 from .speeds import (
     KM,
     base_line,
@@ -60,7 +61,8 @@ def one_drive(recording: Recording, title: str, profile: StoredProfile | None = 
     )
     elements = (*_drive(recording, speeds), *_newest(profile))
     drive = Panel(elements, x, speeds, 3.6, not_known(recording).strip())
-    return Scene((drive, Panel(pedals, x, _pedal_axis([recording]), 1.3)), title)
+    feet = Panel(pedals, x, _pedal_axis([recording]), 1.3)
+    return Scene((drive, *reason_panels(recording, x), feet), title)
 
 
 def compared(
@@ -107,7 +109,7 @@ def compared(
 
 
 def drives(recordings: Mapping[str, Recording], titles: Mapping[str, str], title: str) -> Scene:
-    """Return one panel per drive: limit, profiles, speed, interventions shaded.
+    """Return a panel per drive: limit, profiles, speed, interventions shaded, reasons below.
 
     What is not known of a drive stands in its title.
 
@@ -117,19 +119,12 @@ def drives(recordings: Mapping[str, Recording], titles: Mapping[str, str], title
         title: of the whole figure.
     """
     x, speeds = distance_of(next(iter(recordings.values()))), speed_axis(recordings.values())
-    return Scene(
-        tuple(
-            Panel(
-                _drive(recording, speeds),
-                x,
-                speeds,
-                2.2,
-                f"{name}  {titles[name]}{not_known(recording)}",
-            )
-            for name, recording in recordings.items()
-        ),
-        title,
-    )
+    panels: list[Panel] = []
+    for name, recording in recordings.items():
+        about = f"{name}  {titles[name]}{not_known(recording)}"
+        panels.append(Panel(_drive(recording, speeds), x, speeds, 2.2, about))
+        panels += reason_panels(recording, x)
+    return Scene(tuple(panels), title)
 
 
 def not_known(recording: Recording) -> str:
