@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from .cache import user_cache
 from .kernel import (
     bounds,
+    cluster,
     codes,
     drive,
     evidence,
@@ -88,6 +89,7 @@ KERNEL_MODULES: tuple[ModuleType, ...] = (
     recorder,
     replay,
     following,
+    cluster,
     teach,
     drive,
     stretch,

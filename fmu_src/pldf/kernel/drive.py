@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .arrays import ProfileArrays, RouteArrays, TraceArrays
+from .cluster import confidence_at, update_cluster
 from .codes import (
     ACTIVE,
     FAULT,
@@ -12,12 +13,7 @@ from .codes import (
     XY,
 )
 from .following import confirm_restart, look_ahead
-from .hmi import (
-    confidence_at,
-    notice_new_limit,
-    show_event,
-    update_cluster,
-)
+from .hmi import notice_new_limit, show_event
 from .interpolation import place_at, value_at, value_of
 from .lever import (
     CANCEL_CONTACT,

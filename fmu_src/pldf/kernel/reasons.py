@@ -57,32 +57,35 @@ def find_reasons(st: PldfState, route: RouteArrays, profile: ProfileArrays) -> N
     """Fill ``reason`` and ``aim_m`` of ``profile`` for the learned speeds in it."""
     learned = profile.learned_mps
     last = len(learned) - 1
-    aim = last
-    bound = NOTHING  # what holds the speed at ``aim``
-    why = REASON_SPEEDING_UP
+    hold = last  # the node whose speed a fall in front of it goes to, and what holds it there
+    bound = NOTHING
     top = last  # where the rise ends that the metre behind this one belongs to
+    why = REASON_LIMIT
     for i in range(last, -1, -1):
         rise = slope(learned, i)
         if rise <= PHASE_MPS2:
             top = i
         own = _own_bound(st, route, profile, i)
         if own == REASON_LIMIT:
-            aim = i
+            hold = i
             bound = own
             why = REASON_LIMIT if profile.offset_mps[i] == 0.0 else REASON_LEARNED_OFFSET
         elif rise > PHASE_MPS2 and (
-            learned[top] > learned[i] + NOTABLE_MPS or learned[aim] < learned[i]
+            learned[top] > learned[i] + NOTABLE_MPS or learned[hold] < learned[i]
         ):
-            aim = top
+            hold = i
             bound = NOTHING
             why = REASON_SPEEDING_UP
         elif own == REASON_CURVE:
-            aim = aim if bound == REASON_CURVE and rise < 0.0 else i
+            hold = hold if bound == REASON_CURVE and rise < 0.0 else i
             bound = own
             why = REASON_CURVE
         elif rise < -PHASE_MPS2:
-            why = _reason_to_slow(route, profile, i, aim, bound)
-        profile.aim_m[i] = aim
+            why = _reason_to_slow(route, profile, i, hold, bound)
+        elif learned[hold] > learned[i]:
+            hold = i
+            bound = NOTHING
+        profile.aim_m[i] = top if why == REASON_SPEEDING_UP else hold
         profile.reason[i] = _reason_by_lesson(st, route, profile, i, why)
 
 

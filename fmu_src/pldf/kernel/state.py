@@ -256,8 +256,8 @@ class Memory:
     event_untold: int = code(EVENT)  # the newest that no sentence has told yet
     reason_ns: int = nanoseconds(at_most="time_ns")  # since when the reason is shown
     reason_speed_mps: float = 0.0  # the speed that its sentence names
-    sentence_ns: int = nanoseconds(at_most="time_ns")  # since when the sentence is shown
-    numbers_ns: int = nanoseconds(at_most="time_ns")  # since when it has its numbers
+    reason_base_mps: float = 0.0  # what that would be without lessons
+    numbers_ns: int = nanoseconds(at_most="time_ns")  # since when the sentence has its numbers
     # the driver's last word
     teach_was: int = whole(0, 7)  # sum of the switches' codes
     teach_wanted: int = whole(0, WORDS_MAX)  # what the runtime has to answer behind the step

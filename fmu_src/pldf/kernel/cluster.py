@@ -1,0 +1,296 @@
+"""What the instrument cluster tells the driver: the reason, its sentence, how sure the function is.
+
+The reason is the constraint that binds now: the mode, another car, a temporary limit, a set speed
+by hand, else that of the profile (``reasons``); and where the car is off the speed to drive, that
+it goes there. A reason stays for a second, and so does a sentence, unless it has become false.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from .arrays import ProfileArrays, RouteArrays
+from .codes import (
+    ACTIVE,
+    EVENT_NEW_LIMIT,
+    EVENT_NONE,
+    EVENT_TAKE_OVER,
+    FAULT,
+    GAS_OVERRIDE,
+    LEARN_CONSISTENT,
+    OFF,
+    REASON_CAP_CURVE,
+    REASON_CAP_LEGAL,
+    REASON_COASTING_TO_LIMIT,
+    REASON_CURVE,
+    REASON_FAULT,
+    REASON_FOLLOWING,
+    REASON_HELD,
+    REASON_LEARNED_FASTER,
+    REASON_LEARNED_OFFSET,
+    REASON_LEARNED_SLOWER,
+    REASON_LIMIT,
+    REASON_MANUAL_SET,
+    REASON_OFF,
+    REASON_OVERRIDE,
+    REASON_SLOWING_DOWN,
+    REASON_SPEEDING_UP,
+    REASON_STANDBY,
+    REASON_TEMPORARY_LIMIT,
+    UNIT_MPH,
+)
+from .following import waits_for_driver
+from .hmi import HOLD_NS
+from .interpolation import Place, place_at, value_of
+from .lever import automatic_set_speed, temporary_limit
+from .ranges import EVIDENCE_MAX
+from .reasons import AT_SET_MPS, CURVE_SHARE
+from .sentences import EVENT_SENTENCES
+from .state import PldfState
+from .units import KMH_PER_MPS, MPH_PER_MPS
+
+# Further from the speed to drive than this, the car goes there, and that is what is said.
+AWAY_MPS = 1.0
+# Nearer to a speed than this the car neither slows down nor speeds up to it.
+NEAR_MPS = 0.3
+# Requests below this are none: so a sentence does not follow the trembling of a controller.
+STILL_MPS2 = 0.1
+# Twice as far is what makes a reason false that holds for its second.
+FALSE_SHARE = 2.0
+# Whole km/h or mph by which a speed that changes by the metre may be off for its second.
+NEARLY = 2
+
+# A reason (REASON in codes), the speed that its sentence names and that without lessons, m/s.
+Reason = tuple[int, float, float]
+
+
+def update_cluster(st: PldfState, route: RouteArrays, profile: ProfileArrays) -> None:
+    """Update reason and sentence at the end of a step, when all other outputs are known."""
+    place = place_at(len(route.limit_mps), st.s_m + st.ahead_m)
+    asked = _asked_by(st, route, profile, place)
+    now = _as_driven(st, asked)
+    young = st.time_ns - max(st.reason_ns, st.numbers_ns) < HOLD_NS
+    if now[0] == st.hmi_reason or not (young and _is_still_true(st, asked[0])):
+        if now[0] != st.hmi_reason:
+            st.reason_ns = st.time_ns
+        st.hmi_reason = now[0]
+        st.reason_speed_mps = now[1]
+        st.reason_base_mps = now[2]
+    st.hmi_reason_code = st.hmi_reason
+    _update_sentence(st, route, profile, place)
+
+
+# Reasons
+
+
+def _asked_by(st: PldfState, route: RouteArrays, profile: ProfileArrays, place: Place) -> Reason:
+    """Return what asks for the present target speed, and the speed asked for."""
+    if st.mode != ACTIVE:
+        return _reason_of_mode(st.mode), 0.0, 0.0
+    if st.following_limits != 0:
+        return (REASON_HELD if waits_for_driver(st) else REASON_FOLLOWING), 0.0, 0.0
+    if st.manual_set_mps > 0.0 and st.s_m + st.ahead_m < st.manual_end_m:
+        return _asked_by_hand(st, route, profile, place)
+    temporary = temporary_limit(st, route, place[0])
+    if temporary > 0.0 and st.target_speed_mps >= temporary - AT_SET_MPS:
+        return REASON_TEMPORARY_LIMIT, temporary, 0.0
+    return _asked_by_profile(st, profile, place)
+
+
+def _reason_of_mode(mode: int) -> int:
+    if mode == FAULT:
+        return REASON_FAULT
+    if mode == GAS_OVERRIDE:
+        return REASON_OVERRIDE
+    return REASON_OFF if mode == OFF else REASON_STANDBY
+
+
+def _asked_by_profile(st: PldfState, profile: ProfileArrays, place: Place) -> Reason:
+    reason = int(profile.reason[place[0]])
+    if reason in (
+        REASON_LEARNED_FASTER,
+        REASON_LEARNED_SLOWER,
+        REASON_CAP_CURVE,
+        REASON_CAP_LEGAL,
+    ):
+        return reason, st.target_speed_mps, st.base_speed_mps
+    return reason, profile.learned_mps[int(profile.aim_m[place[0]])], 0.0
+
+
+def _asked_by_hand(
+    st: PldfState, route: RouteArrays, profile: ProfileArrays, place: Place
+) -> Reason:
+    """Return the same under a set speed set by hand (``target_of`` in tracking)."""
+    target = st.target_speed_mps
+    learned = value_of(profile.learned_mps, place)
+    manual = st.manual_set_mps
+    lesson = learned - value_of(profile.planned_mps, place)
+    if abs(target - manual) <= AT_SET_MPS:
+        return REASON_MANUAL_SET, manual, 0.0
+    if target <= learned:
+        return _asked_by_profile(st, profile, place)
+    if lesson < -AT_SET_MPS:  # the set speed stays as much lower here as the profile does
+        return REASON_LEARNED_SLOWER, target, target - lesson
+    behind = st.manual_behind_mps
+    left_m = st.manual_end_m - st.s_m - st.ahead_m
+    approach = sqrt(behind * behind - 2.0 * st.planner_accel_min_mps2 * left_m)
+    before_sign = st.manual_end_m < len(profile.learned_mps) - 1
+    if before_sign and target >= approach - AT_SET_MPS:
+        lower = route.limit_mps[int(st.manual_end_m)] < route.limit_mps[place[0]]
+        return (REASON_COASTING_TO_LIMIT if lower else REASON_SLOWING_DOWN), behind, 0.0
+    curve = route.curvature_per_m[place[0]] * target * target
+    binds = curve >= CURVE_SHARE * st.planner_lateral_accel_max_mps2
+    if binds or profile.open_mps[place[1]] < profile.open_mps[place[0]]:
+        return REASON_CURVE, target, 0.0
+    return REASON_SPEEDING_UP, manual, 0.0
+
+
+def _as_driven(st: PldfState, asked: Reason) -> Reason:
+    """Return ``asked``, or that the car goes to another speed, if the car does not do as it says.
+
+    Where neither is so, as in the moment in which the request turns, the limit is what is said.
+    """
+    reason = asked[0]
+    if st.mode != ACTIVE or reason in (REASON_FOLLOWING, REASON_HELD):
+        return asked
+    if _does_so(st, asked):
+        return asked
+    speed = st.vehicle_speed_mps
+    target = st.target_speed_mps
+    goes = reason in (REASON_SLOWING_DOWN, REASON_SPEEDING_UP)
+    off = NEAR_MPS if goes else AWAY_MPS
+    if st.acceleration_request_mps2 < STILL_MPS2 and speed > target + off:
+        return REASON_SLOWING_DOWN, target, 0.0
+    if st.acceleration_request_mps2 > -STILL_MPS2 and speed < target - off:
+        return REASON_SPEEDING_UP, target, 0.0
+    return (REASON_LIMIT, 0.0, 0.0) if goes else asked
+
+
+def _does_so(st: PldfState, asked: Reason) -> bool:
+    """Tell whether the car goes to the speed that is asked for."""
+    speed = st.vehicle_speed_mps
+    if asked[0] == REASON_SPEEDING_UP:
+        return st.acceleration_request_mps2 > -STILL_MPS2 and speed < asked[1]
+    slows = st.acceleration_request_mps2 < STILL_MPS2 and speed > asked[1]
+    return slows and asked[0] in (REASON_SLOWING_DOWN, REASON_COASTING_TO_LIMIT, REASON_CURVE)
+
+
+def _is_still_true(st: PldfState, asked: int) -> bool:
+    """Tell whether the reason shown is not contradicted by what is ``asked`` for and done now."""
+    shown = st.hmi_reason
+    if st.mode != ACTIVE or asked in (REASON_FOLLOWING, REASON_HELD):
+        return False
+    speed = st.vehicle_speed_mps
+    request = st.acceleration_request_mps2
+    if shown == REASON_SPEEDING_UP:
+        return request > -STILL_MPS2 and speed < st.reason_speed_mps
+    if shown == REASON_SLOWING_DOWN:
+        return request < STILL_MPS2 and speed > st.reason_speed_mps
+    return shown == asked and abs(speed - st.target_speed_mps) < FALSE_SHARE * AWAY_MPS
+
+
+# Sentences
+
+
+def _update_sentence(
+    st: PldfState, route: RouteArrays, profile: ProfileArrays, place: Place
+) -> None:
+    """Say the event not told yet, or the reason, once the sentence before has had its second."""
+    young = st.time_ns - st.numbers_ns < HOLD_NS
+    told = st.hmi_sentence - EVENT_SENTENCES  # event that is being told; below 0: none
+    numbers = _numbers_of(st, route, profile, place)
+    true = st.hmi_sentence == st.hmi_reason and not _are_false(st, numbers)
+    if st.hmi_take_over != 0:
+        st.event_untold = EVENT_NONE
+        _say(st, EVENT_SENTENCES + EVENT_TAKE_OVER, (0, 0, 0, 0))
+    elif young and (true or (told >= 0 and told != EVENT_TAKE_OVER)):
+        return
+    elif st.event_untold != EVENT_NONE:
+        limit = _whole(st, st.limit_mps) if st.event_untold == EVENT_NEW_LIMIT else 0
+        _say(st, EVENT_SENTENCES + st.event_untold, (0, 0, limit, 0))
+        st.event_untold = EVENT_NONE
+    else:
+        _say(st, st.hmi_reason, numbers)
+
+
+def _say(st: PldfState, sentence: int, numbers: tuple[int, int, int, int]) -> None:
+    if st.hmi_sentence == sentence and not _differ(st, numbers):
+        return
+    st.hmi_sentence = sentence
+    st.hmi_sentence_speed = numbers[0]
+    st.hmi_sentence_base = numbers[1]
+    st.hmi_sentence_limit = numbers[2]
+    st.hmi_sentence_drive = numbers[3]
+    st.numbers_ns = st.time_ns
+
+
+def _differ(st: PldfState, numbers: tuple[int, int, int, int]) -> bool:
+    speeds = st.hmi_sentence_speed != numbers[0] or st.hmi_sentence_base != numbers[1]
+    return speeds or st.hmi_sentence_limit != numbers[2] or st.hmi_sentence_drive != numbers[3]
+
+
+def _are_false(st: PldfState, numbers: tuple[int, int, int, int]) -> bool:
+    """Tell whether the numbers shown are no longer these: speeds may be off by NEARLY."""
+    speed = abs(st.hmi_sentence_speed - numbers[0])
+    base = abs(st.hmi_sentence_base - numbers[1])
+    near = 0 if st.hmi_reason in (REASON_MANUAL_SET, REASON_LEARNED_OFFSET) else NEARLY
+    far = max(speed, base) > near
+    return far or st.hmi_sentence_limit != numbers[2] or st.hmi_sentence_drive != numbers[3]
+
+
+def _numbers_of(
+    st: PldfState, route: RouteArrays, profile: ProfileArrays, place: Place
+) -> tuple[int, int, int, int]:
+    """Return speed, base, limit and drive for the sentence of the reason, in the unit chosen.
+
+    What the sentence does not name is 0.
+    """
+    cell = place[0]
+    reason = st.hmi_reason
+    speed = _whole(st, st.reason_speed_mps)
+    base = 0
+    limit = 0
+    drive = 0
+    if reason == REASON_LEARNED_OFFSET:
+        speed = _whole(st, automatic_set_speed(route, profile, cell))
+    if reason in (REASON_LIMIT, REASON_LEARNED_OFFSET, REASON_CAP_LEGAL):
+        limit = _whole(st, st.limit_mps)
+    if reason == REASON_COASTING_TO_LIMIT:
+        limit = _whole(st, route.limit_mps[int(profile.limit_end_m[cell])])
+    if reason == REASON_TEMPORARY_LIMIT:
+        limit = speed
+    if reason in (REASON_LEARNED_FASTER, REASON_LEARNED_SLOWER):
+        base = _whole(st, st.reason_base_mps)
+        drive = int(profile.drive[cell])
+        # They differ by 1 km/h or more; in the coarser mph they must not come out equal.
+        faster = reason == REASON_LEARNED_FASTER
+        speed = max(speed, base + 1) if faster else min(speed, base - 1)
+    if reason in (REASON_LIMIT, REASON_TEMPORARY_LIMIT):
+        speed = 0
+    return speed, base, limit, drive
+
+
+def _whole(st: PldfState, speed_mps: float) -> int:
+    """Return the nearest whole number of km/h or mph."""
+    per_mps = MPH_PER_MPS if st.hmi_unit == UNIT_MPH else KMH_PER_MPS
+    return int(per_mps * max(speed_mps, 0.0) + 0.5)
+
+
+# What is known of a place
+
+
+def confidence_at(st: PldfState, profile: ProfileArrays, place: Place) -> float:
+    """Return how sure the function is of what it learned at ``place``, 0 to 1.
+
+    Where consistency is asked for, what the evidence is of what would be enough; else ``1 - 2^-n``
+    after ``n`` lessons, of which each halves the deviation.
+    """
+    i = place[0]
+    if st.learn == LEARN_CONSISTENT or st.learn_consistent != 0:
+        pedals = max(profile.evidence_faster[i], profile.evidence_slower[i])
+        lever = max(profile.offset_evidence_faster[i], profile.offset_evidence_slower[i])
+        return max(pedals, lever) / EVIDENCE_MAX
+    doubt = 1.0
+    for _ in range(min(int(profile.lessons[i]), 60)):  # behind that it is 1, to the bit
+        doubt *= 0.5
+    return 1.0 - doubt
