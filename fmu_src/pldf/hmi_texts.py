@@ -7,6 +7,7 @@ The kernel chooses the sentence and its numbers; the native FMUs put them togeth
 from __future__ import annotations
 
 import json
+import re
 from typing import Final, Protocol
 
 from .kernel.codes import LANGUAGE_DE
@@ -48,6 +49,8 @@ def text_of(spoken: Spoken) -> str:
     if row is None:
         return ""
     text = row.german if spoken.hmi_language == LANGUAGE_DE else row.english
+    known = r"\1" if spoken.hmi_sentence_drive > 0 else ""
+    text = re.sub(r"\[(.*?)\]", known, text)
     for name in NUMBERS:
         text = text.replace(f"{{{name}}}", str(getattr(spoken, f"hmi_sentence_{name}")))
     return text
@@ -57,7 +60,8 @@ def as_json() -> bytes:
     """Return the table as the FMUs carry it, for clusters that write the sentences themselves."""
     content = {
         "about": "Sentences of hmi.text: hmi.sentence names one, the numbers replace what stands "
-        "in braces; speeds and limits are whole numbers in hmi.unit",
+        "in braces; speeds and limits are whole numbers in hmi.unit. What stands in square "
+        "brackets is left out where the drive is 0",
         "numbers": _MEANINGS,
         "reasons": [_row(code, code, row) for code, row in enumerate(REASONS)],
         "events": [_row(code, EVENT_SENTENCES + code, row) for code, row in enumerate(EVENTS)],

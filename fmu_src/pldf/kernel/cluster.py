@@ -1,8 +1,8 @@
-"""What the instrument cluster tells the driver: the reason, its sentence, how sure the function is.
+"""Why the car drives at this speed, for the instrument cluster, and how sure the function is.
 
 The reason is the constraint that binds now: the mode, another car, a temporary limit, a set speed
 by hand, else that of the profile (``reasons``); and where the car is off the speed to drive, that
-it goes there. A reason stays for a second, and so does a sentence, unless it has become false.
+it goes there. A reason stays for a second, unless it has become false.
 """
 
 from __future__ import annotations
@@ -12,9 +12,6 @@ from math import sqrt
 from .arrays import ProfileArrays, RouteArrays
 from .codes import (
     ACTIVE,
-    EVENT_NEW_LIMIT,
-    EVENT_NONE,
-    EVENT_TAKE_OVER,
     FAULT,
     GAS_OVERRIDE,
     LEARN_CONSISTENT,
@@ -27,7 +24,6 @@ from .codes import (
     REASON_FOLLOWING,
     REASON_HELD,
     REASON_LEARNED_FASTER,
-    REASON_LEARNED_OFFSET,
     REASON_LEARNED_SLOWER,
     REASON_LIMIT,
     REASON_MANUAL_SET,
@@ -37,17 +33,16 @@ from .codes import (
     REASON_SPEEDING_UP,
     REASON_STANDBY,
     REASON_TEMPORARY_LIMIT,
-    UNIT_MPH,
 )
 from .following import waits_for_driver
 from .hmi import HOLD_NS
 from .interpolation import Place, place_at, value_of
-from .lever import automatic_set_speed, temporary_limit
+from .lever import temporary_limit
 from .ranges import EVIDENCE_MAX
 from .reasons import AT_SET_MPS, CURVE_SHARE
-from .sentences import EVENT_SENTENCES
+from .speech import update_sentence
 from .state import PldfState
-from .units import KMH_PER_MPS, MPH_PER_MPS
+from .units import MPS_PER_KMH
 
 # Further from the speed to drive than this, the car goes there, and that is what is said.
 AWAY_MPS = 1.0
@@ -57,9 +52,6 @@ NEAR_MPS = 0.3
 STILL_MPS2 = 0.1
 # Twice as far is what makes a reason false that holds for its second.
 FALSE_SHARE = 2.0
-# Whole km/h or mph by which a speed that changes by the metre may be off for its second.
-NEARLY = 2
-
 # A reason (REASON in codes), the speed that its sentence names and that without lessons, m/s.
 Reason = tuple[int, float, float]
 
@@ -76,8 +68,11 @@ def update_cluster(st: PldfState, route: RouteArrays, profile: ProfileArrays) ->
         st.hmi_reason = now[0]
         st.reason_speed_mps = now[1]
         st.reason_base_mps = now[2]
+    elif asked[0] == st.hmi_reason:
+        st.reason_speed_mps = asked[1]
+        st.reason_base_mps = asked[2]
     st.hmi_reason_code = st.hmi_reason
-    _update_sentence(st, route, profile, place)
+    update_sentence(st, route, profile, place)
 
 
 # Reasons
@@ -129,8 +124,9 @@ def _asked_by_hand(
         return REASON_MANUAL_SET, manual, 0.0
     if target <= learned:
         return _asked_by_profile(st, profile, place)
-    if lesson < -AT_SET_MPS:  # the set speed stays as much lower here as the profile does
-        return REASON_LEARNED_SLOWER, target, target - lesson
+    least = max(st.learning_deviation_min_mps, MPS_PER_KMH)
+    if lesson < -least and target < st.base_speed_mps - least:  # as much lower as the profile
+        return REASON_LEARNED_SLOWER, target, st.base_speed_mps
     behind = st.manual_behind_mps
     left_m = st.manual_end_m - st.s_m - st.ahead_m
     approach = sqrt(behind * behind - 2.0 * st.planner_accel_min_mps2 * left_m)
@@ -186,94 +182,9 @@ def _is_still_true(st: PldfState, asked: int) -> bool:
         return request > -STILL_MPS2 and speed < st.reason_speed_mps
     if shown == REASON_SLOWING_DOWN:
         return request < STILL_MPS2 and speed > st.reason_speed_mps
+    if shown == REASON_MANUAL_SET:
+        return shown == asked
     return shown == asked and abs(speed - st.target_speed_mps) < FALSE_SHARE * AWAY_MPS
-
-
-# Sentences
-
-
-def _update_sentence(
-    st: PldfState, route: RouteArrays, profile: ProfileArrays, place: Place
-) -> None:
-    """Say the event not told yet, or the reason, once the sentence before has had its second."""
-    young = st.time_ns - st.numbers_ns < HOLD_NS
-    told = st.hmi_sentence - EVENT_SENTENCES  # event that is being told; below 0: none
-    numbers = _numbers_of(st, route, profile, place)
-    true = st.hmi_sentence == st.hmi_reason and not _are_false(st, numbers)
-    if st.hmi_take_over != 0:
-        st.event_untold = EVENT_NONE
-        _say(st, EVENT_SENTENCES + EVENT_TAKE_OVER, (0, 0, 0, 0))
-    elif young and (true or (told >= 0 and told != EVENT_TAKE_OVER)):
-        return
-    elif st.event_untold != EVENT_NONE:
-        limit = _whole(st, st.limit_mps) if st.event_untold == EVENT_NEW_LIMIT else 0
-        _say(st, EVENT_SENTENCES + st.event_untold, (0, 0, limit, 0))
-        st.event_untold = EVENT_NONE
-    else:
-        _say(st, st.hmi_reason, numbers)
-
-
-def _say(st: PldfState, sentence: int, numbers: tuple[int, int, int, int]) -> None:
-    if st.hmi_sentence == sentence and not _differ(st, numbers):
-        return
-    st.hmi_sentence = sentence
-    st.hmi_sentence_speed = numbers[0]
-    st.hmi_sentence_base = numbers[1]
-    st.hmi_sentence_limit = numbers[2]
-    st.hmi_sentence_drive = numbers[3]
-    st.numbers_ns = st.time_ns
-
-
-def _differ(st: PldfState, numbers: tuple[int, int, int, int]) -> bool:
-    speeds = st.hmi_sentence_speed != numbers[0] or st.hmi_sentence_base != numbers[1]
-    return speeds or st.hmi_sentence_limit != numbers[2] or st.hmi_sentence_drive != numbers[3]
-
-
-def _are_false(st: PldfState, numbers: tuple[int, int, int, int]) -> bool:
-    """Tell whether the numbers shown are no longer these: speeds may be off by NEARLY."""
-    speed = abs(st.hmi_sentence_speed - numbers[0])
-    base = abs(st.hmi_sentence_base - numbers[1])
-    near = 0 if st.hmi_reason in (REASON_MANUAL_SET, REASON_LEARNED_OFFSET) else NEARLY
-    far = max(speed, base) > near
-    return far or st.hmi_sentence_limit != numbers[2] or st.hmi_sentence_drive != numbers[3]
-
-
-def _numbers_of(
-    st: PldfState, route: RouteArrays, profile: ProfileArrays, place: Place
-) -> tuple[int, int, int, int]:
-    """Return speed, base, limit and drive for the sentence of the reason, in the unit chosen.
-
-    What the sentence does not name is 0.
-    """
-    cell = place[0]
-    reason = st.hmi_reason
-    speed = _whole(st, st.reason_speed_mps)
-    base = 0
-    limit = 0
-    drive = 0
-    if reason == REASON_LEARNED_OFFSET:
-        speed = _whole(st, automatic_set_speed(route, profile, cell))
-    if reason in (REASON_LIMIT, REASON_LEARNED_OFFSET, REASON_CAP_LEGAL):
-        limit = _whole(st, st.limit_mps)
-    if reason == REASON_COASTING_TO_LIMIT:
-        limit = _whole(st, route.limit_mps[int(profile.limit_end_m[cell])])
-    if reason == REASON_TEMPORARY_LIMIT:
-        limit = speed
-    if reason in (REASON_LEARNED_FASTER, REASON_LEARNED_SLOWER):
-        base = _whole(st, st.reason_base_mps)
-        drive = int(profile.drive[cell])
-        # They differ by 1 km/h or more; in the coarser mph they must not come out equal.
-        faster = reason == REASON_LEARNED_FASTER
-        speed = max(speed, base + 1) if faster else min(speed, base - 1)
-    if reason in (REASON_LIMIT, REASON_TEMPORARY_LIMIT):
-        speed = 0
-    return speed, base, limit, drive
-
-
-def _whole(st: PldfState, speed_mps: float) -> int:
-    """Return the nearest whole number of km/h or mph."""
-    per_mps = MPH_PER_MPS if st.hmi_unit == UNIT_MPH else KMH_PER_MPS
-    return int(per_mps * max(speed_mps, 0.0) + 0.5)
 
 
 # What is known of a place

@@ -6,7 +6,8 @@ from it. The place in its list is a reason's or event's code, so new ones go to 
 
 A sentence takes whole numbers, in the unit that ``hmi.unit`` names: ``{speed}`` the car aims at,
 ``{base}`` what it would be without lessons, ``{limit}`` in force or ahead, ``{drive}`` that taught
-it last. They are the outputs ``hmi.sentence_speed`` and so on.
+it last. They are the outputs ``hmi.sentence_speed`` and so on. What stands in square brackets is
+left out where no such drive is known (0).
 """
 
 from __future__ import annotations
@@ -52,14 +53,14 @@ REASONS: Final = (
     ),
     Sentence(
         "LEARNED_FASTER", 8, "learned-faster",
-        "{speed} instead of {base}: you drove faster here in drive {drive}",
-        "{speed} statt {base}: hier fuhren Sie in Fahrt {drive} schneller",
+        "{speed} instead of {base}: you drove faster here[ in drive {drive}]",
+        "{speed} statt {base}: hier fuhren Sie[ in Fahrt {drive}] schneller",
         "pedals taught a higher speed here",
     ),
     Sentence(
         "LEARNED_SLOWER", 8, "learned-slower",
-        "{speed} instead of {base}: you drove slower here in drive {drive}",
-        "{speed} statt {base}: hier fuhren Sie in Fahrt {drive} langsamer",
+        "{speed} instead of {base}: you drove slower here[ in drive {drive}]",
+        "{speed} statt {base}: hier fuhren Sie[ in Fahrt {drive}] langsamer",
         "pedals taught a lower speed here",
     ),
     Sentence(

@@ -91,6 +91,7 @@ def header(model: NativeModel) -> str:
         "EVENT_COUNT": len(EVENTS),
         "EVENT_SENTENCES": EVENT_SENTENCES,
         "SENTENCE_NUMBERS": len(NUMBERS),
+        "SENTENCE_DRIVE": NUMBERS.index("drive"),
         "SENTENCE_SIZE": SENTENCE_SIZE,
         "ROUTE_COLUMNS": len(model.route._fields),
         "PROFILE_COLUMNS": len(COLUMNS),

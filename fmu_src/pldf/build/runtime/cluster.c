@@ -31,6 +31,11 @@ const char *session_text(Session *s, uint32_t reference) {
     const char *at = sentence_of(c, s->state.record);
     s->text[0] = 0;
     while (*at) {
+        if (*at == '[' && !s->state.record[c->numbers[SENTENCE_DRIVE]].integer) at = strchr(at, ']');
+        if (*at == '[' || *at == ']') { /* what stands between them needs a drive */
+            at++;
+            continue;
+        }
         const char *behind = put_number(c, s->state.record, at, s->text);
         size_t size = strlen(s->text);
         if (!behind && size + 1 < SENTENCE_SIZE) {
