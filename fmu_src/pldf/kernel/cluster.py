@@ -136,7 +136,8 @@ def _asked_by_hand(
         return (REASON_COASTING_TO_LIMIT if lower else REASON_SLOWING_DOWN), behind, 0.0
     curve = route.curvature_per_m[place[0]] * target * target
     binds = curve >= CURVE_SHARE * st.planner_lateral_accel_max_mps2
-    if binds or profile.open_mps[place[1]] < profile.open_mps[place[0]]:
+    falls = profile.open_mps[place[1]] < profile.open_mps[place[0]]
+    if (binds or falls) and value_of(profile.open_mps, place) < manual - AT_SET_MPS:
         return REASON_CURVE, target, 0.0
     return REASON_SPEEDING_UP, manual, 0.0
 
