@@ -12,8 +12,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from .kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
-from .kernel.codes import EVENT_FORGOTTEN, EVENT_NOTHING_TO_UNDO, INPUT_OK, WORD_FORGET, WORD_UNDO
-from .kernel.hmi import start_event
+from .kernel.codes import INPUT_OK, WORD_FORGET, WORD_UNDO
 from .kernel.last_word import forget_here, take_back_lesson
 from .kernel.state import PldfState
 from .kernel.undo import mark_lesson
@@ -23,14 +22,16 @@ from .profiles.stored_profile import COLUMN_NAMES, Iteration, StoredProfile
 # What a drive leaves for the next one and a file keeps of it.
 LEARNED: Final = tuple(name for name in NextArrays._fields if name in COLUMN_NAMES)
 
-FORGET_NOTE: Final = "forget at %d m"
-# Printf formats, the same in the native FMUs; behind the time.
-FORGOTTEN: Final = "what was learned here (%d m) is forgotten"
-NOTHING_TO_FORGET: Final = "nothing is learned here (%d m): nothing to forget"
-UNDONE: Final = "what iteration %d taught is taken back"
-NOTHING_TO_UNDO: Final = "nothing taught is in force: nothing to undo"
-# Behind the drive.
-WORDS_SAVED: Final = "%d words of the driver kept"
+# Printf formats, the same in the native FMUs. Those of answers stand behind the time.
+WORD_TEXTS: Final = {
+    "WORD_FORGOTTEN": "what was learned here (%d m) is forgotten",
+    "WORD_NOTHING_TO_FORGET": "nothing is learned here (%d m): nothing to forget",
+    "WORD_UNDONE": "what iteration %d taught is taken back",
+    "WORD_NOTHING_TO_UNDO": "nothing that was taught is in force: nothing to undo",
+    "WORDS_SAVED": "words of the driver: %d",
+    "FORGET_NOTE": "forget at %d m",
+    "UNDO_NOTE": UNDO_NOTE,
+}
 
 
 class Driven(NamedTuple):
@@ -48,17 +49,16 @@ def answer(st: PldfState, arrays: Driven, stored: StoredProfile | None) -> list[
     wanted, st.teach_wanted = st.teach_wanted, 0
     told = []
     if wanted & WORD_FORGET:
+        words = st.words
         forget_here(st, *arrays)
-        text = FORGOTTEN if st.hmi_event == EVENT_FORGOTTEN else NOTHING_TO_FORGET
-        told.append(text % int(st.s_m))
+        name = "WORD_FORGOTTEN" if st.words > words else "WORD_NOTHING_TO_FORGET"
+        told.append(WORD_TEXTS[name] % int(st.s_m))
     if wanted & WORD_UNDO:
         number = lesson_to_undo(st, arrays.trace, stored)
-        if stored is not None and number > 0:
-            undo(st, arrays, stored, number)
-            told.append(UNDONE % number)
-        else:
-            start_event(st, EVENT_NOTHING_TO_UNDO)
-            told.append(NOTHING_TO_UNDO)
+        undo(st, arrays, stored, number)
+        told.append(
+            WORD_TEXTS["WORD_UNDONE"] % number if number else WORD_TEXTS["WORD_NOTHING_TO_UNDO"]
+        )
     return told
 
 
@@ -70,12 +70,13 @@ def lesson_to_undo(st: PldfState, trace: TraceArrays, stored: StoredProfile | No
     return next(lessons_in_force(stored, undone), 0)
 
 
-def undo(st: PldfState, arrays: Driven, stored: StoredProfile, number: int) -> None:
-    """Take back iteration ``number`` of ``stored``, in force at once."""
+def undo(st: PldfState, arrays: Driven, stored: StoredProfile | None, number: int) -> None:
+    """Take back iteration ``number`` of ``stored``, in force at once; 0: there is nothing to."""
     st.taken_back = number
-    fill(arrays.following, stored.iteration(number))
-    mark_lesson(arrays.profile, arrays.following, arrays.work, number)
-    fill(arrays.following, stored.iteration(number - 1))
+    if stored is not None and number > 0:
+        fill(arrays.following, stored.iteration(number))
+        mark_lesson(arrays.profile, arrays.following, arrays.work, number)
+        fill(arrays.following, stored.iteration(number - 1))
     take_back_lesson(st, *arrays)
 
 
@@ -103,7 +104,9 @@ def keep_words(st: PldfState, arrays: Driven, stored: StoredProfile) -> StoredPr
         elif kind == WORD_FORGET:
             st.s_m = at
             forget_here(st, *arrays)
-            kept = kept.with_iteration(_word(kept, arrays, "forget", FORGET_NOTE % int(at)))
+            kept = kept.with_iteration(
+                _word(kept, arrays, "forget", WORD_TEXTS["FORGET_NOTE"] % int(at))
+            )
     return kept
 
 

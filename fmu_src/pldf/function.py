@@ -11,7 +11,7 @@ from typing import Final, cast
 
 import numpy as np
 
-from .driver_words import LEARNED, WORDS_SAVED, Driven, answer, fill, keep_words
+from .driver_words import LEARNED, WORD_TEXTS, Driven, answer, fill, keep_words
 from .errors import ModelError
 from .function_words import INPUT_TEXT, KEPT_BESIDE, LAP_TEXT, NO_STORE, OLDER_READING
 from .hmi_texts import text_of
@@ -191,7 +191,7 @@ class DrivingFunction(Instance[PldfState]):
                 "interventions",
             )
         elif words:
-            self._save(self.stored, words, WORDS_SAVED % len(words))
+            self._save(self.stored, words, WORD_TEXTS["WORDS_SAVED"] % len(words))
 
     def learn(self, kind: str = "drive") -> Iteration:
         """Return what the drive so far leaves for the next one, as the next iteration."""

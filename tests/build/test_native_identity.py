@@ -43,6 +43,8 @@ def test_drives_reach_what_there_is_to_compare(expected: dict[str, Outcome]) -> 
             assert b"iteration 2 " in expected[name][1]
         elif name != "hands off":
             assert len(np.unique(columns[0])) > 1
+    assert b" forget 0 forget at " in expected["words"][1]
+    assert b" undo 0 undo of 1" in expected["undo"][1]
     assert len({found[0][0] for found in expected.values()}) == len(CASES)
 
 

@@ -19,6 +19,7 @@ from pldf.kernel.codes import (
     OUTCOME_LEARNED,
     OUTCOME_UNDONE,
 )
+from pldf.outcome_words import lines_of
 from pldf.profiles.stored_profile import Iteration, StoredProfile
 
 LIMIT = 80.0 * KMH
@@ -152,6 +153,8 @@ def test_an_intervention_that_began_before_in_the_piece_is_not_learned() -> None
     iteration = made.learn()
     outcome = [made.following.outcome[k] for k in range(2)]
     assert outcome == [OUTCOME_FORGOTTEN, OUTCOME_LEARNED]
+    told = list(lines_of(made.outcomes()))
+    assert told[0].endswith("not learned: it began before the place was forgotten")
     again = int(made.trace.start_m[1])
     assert np.all(iteration.drive[: again - 200] != iteration.number)
     assert iteration.number == 3  # the word is an iteration of its own
@@ -177,6 +180,8 @@ def test_a_set_speed_of_before_is_not_learned_in_a_forgotten_limit() -> None:
     iteration = car.made.learn()
     assert car.made.following.set_outcome[0] == OUTCOME_FORGOTTEN
     assert not iteration.offset_mps[:1100].any()
+    (told,) = lines_of(car.made.outcomes())
+    assert told.endswith("+13.0 km/h not learned: set before the place was forgotten")
 
 
 # Undo
@@ -187,6 +192,7 @@ def test_undo_takes_back_what_the_drive_recorded_first_then_older_and_older_less
     car = car_at(100.0, stored, learn=LEARN_FAITHFUL)
     car.run(2.0, STEP_S, driver_gas_pedal=0.5)
     car.run(1.0, STEP_S, driver_gas_pedal=0.0)
+    car.tip("lever_up_long")
     assert press(car, "teach_undo") == EVENT_UNDONE
     assert_same(known(car.made), stored.iteration(2))
     assert press(car, "teach_undo") == EVENT_UNDONE
@@ -197,6 +203,9 @@ def test_undo_takes_back_what_the_drive_recorded_first_then_older_and_older_less
     assert press(car, "teach_undo") == EVENT_NOTHING_TO_UNDO
     car.made.learn()
     assert car.made.following.outcome[0] == OUTCOME_UNDONE
+    told = list(lines_of(car.made.outcomes()))
+    assert told[0].endswith("not learned: the driver took it back")
+    assert told[1].endswith(" km/h not learned: the driver took it back")
     assert car.made.record.profile_iteration == 4
 
 

@@ -126,6 +126,24 @@ def function_inputs(rng: np.random.Generator, step_s: Table) -> dict[str, Table]
     }
 
 
+def word_inputs(rng: np.random.Generator, step_s: Table) -> dict[str, Table]:
+    """Return the same with a driver who pauses, forgets, and takes back this drive."""
+    return {
+        **function_inputs(rng, step_s),
+        "teach_pause": pressed(rng, 900, 60),
+        "teach_forget_here": pressed(rng, 500, 5),
+        "teach_undo": pressed(rng, 1200, 5),
+    }
+
+
+def undo_inputs(rng: np.random.Generator, step_s: Table) -> dict[str, Table]:
+    """Return the same with a driver who takes back this drive, the last one, and nothing."""
+    undo = np.zeros(STEPS)
+    for first in (2000, 2010, 2020):
+        undo[first : first + 5] = 1.0
+    return {**function_inputs(rng, step_s), "teach_undo": undo}
+
+
 def vehicle_inputs(rng: np.random.Generator, step_s: Table) -> dict[str, Table]:
     """Return requests and pedals up to standstill, and nonsense."""
     wave = 2.5 * np.sin(0.3 * np.cumsum(step_s)) + 0.2 * rng.standard_normal(STEPS)
@@ -165,6 +183,12 @@ CASES: Final = {
     "learn": Case("AdaptivePLDF", {"learn": 1}, function_inputs, learns=True),
     "by line": Case(
         "AdaptivePLDF", {"learn_faithful": 1, "localization": 1}, function_inputs, learns=True
+    ),
+    "words": Case(
+        "AdaptivePLDF", {"learn_faithful": 1, "apply_learned": 1}, word_inputs, learns=True
+    ),
+    "undo": Case(
+        "AdaptivePLDF", {"learn_faithful": 1, "apply_learned": 1}, undo_inputs, learns=True
     ),
     "hills": Case(
         "LongitudinalVehicle", {"grade_from_route": 1, "start_speed_mps": 20.0}, vehicle_inputs

@@ -11,6 +11,7 @@ from .codes import (
     BOUND_NONE,
     EVENT_FORGOTTEN,
     EVENT_NOTHING_TO_FORGET,
+    EVENT_NOTHING_TO_UNDO,
     EVENT_UNDONE,
     INPUT_OK,
     OUTCOME_FORGOTTEN,
@@ -51,6 +52,7 @@ def forget_here(
     room = st.input_state == INPUT_OK and st.words < len(trace.word_kind)
     if not (room and _is_known(profile, piece, limit)):
         start_event(st, EVENT_NOTHING_TO_FORGET)
+        update_outputs(st, route, profile)
         return
     copy_profile(profile, following)
     keep_evidence(profile, following)
@@ -224,11 +226,15 @@ def take_back_lesson(
     work: Work,
     following: NextArrays,
 ) -> None:
-    """Take back iteration ``st.taken_back``, at once.
+    """Take back iteration ``st.taken_back``, at once; 0: there is nothing to take back.
 
     ``following`` holds the iteration before it, ``work`` what ``mark_lesson`` found; both are
     overwritten.
     """
+    if st.taken_back == 0:
+        start_event(st, EVENT_NOTHING_TO_UNDO)
+        update_outputs(st, route, profile)
+        return
     merge_before(profile, following, work)
     _bar_changed(st, profile, trace, following, OUTCOME_UNDONE)
     _put_in_force(st, route, profile, work, following)

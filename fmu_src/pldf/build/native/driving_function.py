@@ -11,9 +11,11 @@ from ...compiled import KERNEL_MODULES
 from ...function import BOUNDS, WATCHES, Files
 from ...kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from ...kernel.drive import drive_step, refresh
+from ...kernel.last_word import forget_here, take_back_lesson
 from ...kernel.learning import learn_drive
 from ...kernel.preparation import adopt_learned, start_drive
 from ...kernel.state import PldfState
+from ...kernel.undo import mark_lesson
 from .model import NativeModel
 from .pointers import columns, record_at
 
@@ -66,6 +68,33 @@ def _learn(record: Any, block: Any, nodes: int, rows: int, step_s: float) -> Non
     learn_drive(st, route, profile, trace, work, following)
 
 
+def _forget(record: Any, block: Any, nodes: int, rows: int, step_s: float) -> None:
+    st = record_at(record)
+    route = columns(RouteArrays, block, 0, nodes)
+    profile = columns(ProfileArrays, block, PROFILE_AT * nodes, nodes)
+    trace = columns(TraceArrays, block, TRACE_AT * nodes, nodes)
+    work = columns(Work, block, WORK_AT * nodes, nodes)
+    following = columns(NextArrays, block, NEXT_AT * nodes, nodes)
+    forget_here(st, route, profile, trace, work, following)
+
+
+def _mark(record: Any, block: Any, nodes: int, rows: int, step_s: float) -> None:
+    profile = columns(ProfileArrays, block, PROFILE_AT * nodes, nodes)
+    work = columns(Work, block, WORK_AT * nodes, nodes)
+    following = columns(NextArrays, block, NEXT_AT * nodes, nodes)
+    mark_lesson(profile, following, work, record_at(record).taken_back)
+
+
+def _take_back(record: Any, block: Any, nodes: int, rows: int, step_s: float) -> None:
+    st = record_at(record)
+    route = columns(RouteArrays, block, 0, nodes)
+    profile = columns(ProfileArrays, block, PROFILE_AT * nodes, nodes)
+    trace = columns(TraceArrays, block, TRACE_AT * nodes, nodes)
+    work = columns(Work, block, WORK_AT * nodes, nodes)
+    following = columns(NextArrays, block, NEXT_AT * nodes, nodes)
+    take_back_lesson(st, route, profile, trace, work, following)
+
+
 MODEL: Final = NativeModel(
     name="AdaptivePLDF",
     about="Predictive longitudinal driving function that learns from its driver (PLDF with SPAA)",
@@ -78,6 +107,9 @@ MODEL: Final = NativeModel(
         "refresh": _refresh,
         "step": _step,
         "learn": _learn,
+        "forget": _forget,
+        "mark": _mark,
+        "take_back": _take_back,
     },
     groups=(RouteArrays, ProfileArrays, TraceArrays, Work, NextArrays),
     kept=3,

@@ -26,8 +26,8 @@ class NativeModel:
         texts: class of the String parameters.
         modules: kernel modules that the entry points need.
         entries: functions ``(record, block, nodes, rows, step_s)``: ``start`` and ``step``;
-            ``refresh`` if outputs follow inputs without a step; ``adopt`` and ``learn`` if the
-            model learns.
+            ``refresh`` if outputs follow inputs without a step; ``adopt``, ``learn``, ``forget``,
+            ``mark`` and ``take_back`` if the model learns.
         groups: named tuples of arrays per node, in the order of the block.
         kept: how many of the groups belong to the state; the others are work space.
         route: the group that is filled from the route.

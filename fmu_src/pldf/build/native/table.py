@@ -11,7 +11,7 @@ from math import inf
 from typing import Any, Final
 
 from ... import own_recording
-from ...driver_words import LEARNED
+from ...driver_words import LEARNED, WORD_TEXTS
 from ...fmi.phases import Phase
 from ...fmi.session import STEP_MAX_S
 from ...function_words import OLDER_READING
@@ -25,6 +25,8 @@ from ...kernel.codes import (
     LOCALIZATION,
     OUTCOME,
     PROFILE_STATUS,
+    WORD_FORGET,
+    WORD_UNDO,
 )
 from ...kernel.sentences import EVENT_SENTENCES, EVENTS, NUMBERS, REASONS
 from ...kernel.signals import Signal, by_reference, parameters_of, time_reference, variables_of
@@ -78,6 +80,12 @@ _LEARNING_CELLS: Final = {
     "speed_min": "learning_speed_min_mps",
     "profile_iteration": "profile_iteration",
     "profile_status": "profile_status",
+    "time_ns": "time_ns",
+    "s_m": "s_m",
+    "input_state": "input_state",
+    "teach_wanted": "teach_wanted",
+    "words": "words",
+    "taken_back": "taken_back",
 }
 
 
@@ -97,9 +105,13 @@ def header(model: NativeModel) -> str:
         "PROFILE_COLUMNS": len(COLUMNS),
         "COLUMN_BASE": _column_at("base_mps"),
         "COLUMN_LEARNED": _column_at(LEARNED[0]),
+        "COLUMN_OFFSET": _column_at("offset_mps"),
+        "COLUMN_DRIVE": _column_at("drive"),
         "KERNEL_COLUMNS": len(LEARNED),
         "FORMAT_1_COLUMNS": len(COLUMNS_1),
         "PROFILE_KINDS": len(KINDS),
+        "WORD_FORGET": WORD_FORGET,
+        "WORD_UNDO": WORD_UNDO,
         "MARK_KINDS": len(KIND_WORDS),
         "NAME_BYTES_MAX": NAME_BYTES_MAX,
         "NODES_MAX": NODES_MAX,
@@ -133,7 +145,7 @@ def header(model: NativeModel) -> str:
         "RECORDING_NOT_WRITTEN": own_recording.NOT_WRITTEN,
         "RECORDING_NOT_WRITABLE": own_recording.NOT_WRITABLE,
     }
-    texts = {**TEXTS, **recording, "OLDER_READING": OLDER_READING}
+    texts = {**TEXTS, **WORD_TEXTS, **recording, "OLDER_READING": OLDER_READING}
     lines += [f"#define TEXT_{name} {literal(text)}" for name, text in texts.items()]
     return "\n".join([*lines, ""])
 
@@ -281,8 +293,8 @@ def _members(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
 
 def _learning(model: NativeModel, cells: list[str]) -> Iterator[tuple[str, str]]:
     texts = parameters_of(model.texts)
-    yield "adopt", "model_adopt"
-    yield "learn", "model_learn"
+    for entry in ("adopt", "learn", "forget", "mark", "take_back"):
+        yield entry, f"model_{entry}"
     yield "bounds", "bounds"
     yield "bound_count", str(len(model.bounds))
     yield "recorded", "recorded"

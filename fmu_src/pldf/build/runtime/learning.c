@@ -1,6 +1,6 @@
 /* What only a model that learns has: the stored profile, before a drive and after it. */
 #include <math.h>
-#include <string.h>
+#include <stdio.h>
 
 #include "run.h"
 
@@ -71,35 +71,51 @@ void learning_follow(const Importer *importer, State *state, Run *run) {
     p->driver = state->record[l->driver_id].integer;
     p->nodes = state->nodes;
     state->record[l->profile_status].integer = load_profile(importer, state, run);
-    int64_t count = p->bytes ? p->count : 0;
-    state->record[l->profile_iteration].integer = count;
-    if (count && state->record[l->apply_learned].integer) {
-        double *learned = run->block + l->learned_column * p->nodes;
-        for (int column = 0; column < KERNEL_COLUMNS; column++) {
-            const double *values = profile_newest(p, COLUMN_LEARNED + column);
-            if (values) memcpy(learned + column * p->nodes, values, (size_t)(8 * p->nodes));
-            else memset(learned + column * p->nodes, 0, (size_t)(8 * p->nodes));
-        }
-        run_call(l->adopt, state, run, 0.0);
-    }
+    words_follow(state, run);
     run_call(model.refresh, state, run, 0.0);
 }
 
-Level learning_finish(const Importer *importer, State *state, Run *run, bool before) {
+/* Adds what the drive taught to what its driver said. */
+static bool add_lesson(const Importer *importer, State *state, Run *run, Profile *kept, char *why) {
     const Learning *l = model.learning;
-    if (!l || !run->block || !learns(state) || state->record[l->nodes].integer < 2) return INFO;
-    if (before) {
-        importer_tell(importer, WARNING, "this drive had ended before its state was restored; it is not "
-                                         "learned a second time");
-        return WARNING;
-    }
     run_call(l->learn, state, run, 0.0);
     outcome_tell(importer, state, run);
     bool cut = state->record[l->intervening].integer;
     Lesson lesson = {run->block + l->base_column * state->nodes,
                      run->block + (l->next_column + NEXT_LEARNED_MPS) * state->nodes,
-                     state->record[l->apply_learned].integer,
+                     state->record[l->apply_learned].integer, "drive",
                      cut ? "drive, last intervention truncated" : "drive",
                      state->record[l->interventions].integer};
-    return *run->folder ? store_save(importer, run->folder, &run->stored, &lesson) : INFO;
+    return profile_add(kept, &lesson, why);
+}
+
+static Level save(const Importer *importer, const State *state, const Run *run, Profile *kept,
+                  bool taught, const char *why) {
+    char what[REASON_SIZE];
+    const Learning *l = model.learning;
+    if (taught)
+        snprintf(what, sizeof what, "drive %lld learned from %lld pedal interventions",
+                 (long long)kept->count, (long long)state->record[l->interventions].integer);
+    else snprintf(what, sizeof what, TEXT_WORDS_SAVED, (int)state->record[l->words].integer);
+    return store_save(importer, run->folder, &run->stored, kept, what, why);
+}
+
+Level learning_finish(const Importer *importer, State *state, Run *run, bool before) {
+    const Learning *l = model.learning;
+    char why[REASON_SIZE] = "not enough memory";
+    if (!l || !run->block) return INFO;
+    bool taught = learns(state) && state->record[l->nodes].integer >= 2;
+    if (!taught && !state->record[l->words].integer) return INFO;
+    if (before) {
+        importer_tell(importer, WARNING, "this drive had ended before its state was restored; it is not "
+                                         "learned a second time");
+        return WARNING;
+    }
+    Profile kept = run->stored;
+    bool good = words_keep(state, run, &kept, why);
+    good = (!taught || add_lesson(importer, state, run, &kept, why)) && good;
+    if (good && kept.bytes == run->stored.bytes) return INFO;
+    Level level = *run->folder ? save(importer, state, run, &kept, taught, good ? NULL : why) : INFO;
+    if (kept.bytes != run->stored.bytes) profile_free(&kept);
+    return level;
 }

@@ -120,6 +120,8 @@ static void add_pedal(Line *line, const State *state, const Run *run, int64_t k)
     case OUTCOME_NOT_ELIGIBLE: add(line, TEXT_NOT_ELIGIBLE); break;
     case OUTCOME_FOLLOWING: add(line, TEXT_FOLLOWING); break;
     case OUTCOME_PENDING: add(line, TEXT_PENDING, tenths("", NEXT(PROOF)).text, accept(state).text); break;
+    case OUTCOME_FORGOTTEN: add(line, TEXT_FORGOTTEN); break;
+    case OUTCOME_UNDONE: add(line, TEXT_UNDONE); break;
     default: add(line, TEXT_NOT_MOVED);
     }
 }
@@ -128,13 +130,16 @@ static void add_set_speed(Line *line, const State *state, const Run *run, int64_
     double wish = NEXT(SET_WISH_MPS), offset = NEXT(SET_OFFSET_MPS);
     add(line, TEXT_SET_SPEED, whole(NEXT(SET_FROM_M)), whole(NEXT(SET_TO_M)),
         roads(run, NEXT(SET_FROM_M), NEXT(SET_TO_M)).text);
-    if ((int)NEXT(SET_OUTCOME) == OUTCOME_TAKEN_BACK) add(line, TEXT_SET_TAKEN_BACK);
-    else if ((int)NEXT(SET_OUTCOME) == OUTCOME_NOT_ELIGIBLE)
-        add(line, TEXT_SET_NOT_ELIGIBLE, signed_kmh(wish).text);
-    else if ((int)NEXT(SET_OUTCOME) == OUTCOME_PENDING)
+    switch ((int)NEXT(SET_OUTCOME)) {
+    case OUTCOME_TAKEN_BACK: add(line, TEXT_SET_TAKEN_BACK); break;
+    case OUTCOME_NOT_ELIGIBLE: add(line, TEXT_SET_NOT_ELIGIBLE, signed_kmh(wish).text); break;
+    case OUTCOME_FORGOTTEN: add(line, TEXT_SET_FORGOTTEN, signed_kmh(wish).text); break;
+    case OUTCOME_UNDONE: add(line, TEXT_SET_UNDONE, signed_kmh(wish).text); break;
+    case OUTCOME_PENDING:
         add(line, TEXT_SET_PENDING, signed_kmh(wish).text, tenths("", NEXT(SET_PROOF)).text,
             accept(state).text);
-    else {
+        break;
+    default:
         if (offset < wish - SAME_OFFSET_MPS)
             add(line, TEXT_SET_CUT, signed_kmh(offset).text, signed_kmh(wish).text);
         else add(line, TEXT_SET_LEARNED, signed_kmh(offset).text);

@@ -14,7 +14,7 @@ typedef struct { /* docs/profile-format.md */
 typedef struct { /* what a drive leaves behind */
     const double *base, *columns; /* n values; those of the kernel, one column after the other */
     bool carried; /* the other columns are those of the newest iteration, else zero */
-    const char *note;
+    const char *kind, *note;
     int64_t interventions;
 } Lesson;
 
@@ -24,9 +24,14 @@ bool profile_parse(Profile *profile, char *why);
 /* Values of the newest iteration, or of the base profile if there is none; NULL: all are zero. */
 const double *profile_newest(const Profile *profile, int column);
 bool profile_same_history(const Profile *a, const Profile *b);
-/* Bytes of the profile (driver, route and nodes are set) with one more iteration, in the newest
-   format; NULL: memory. */
-uint8_t *profile_extend(const Profile *profile, const Lesson *lesson, int64_t *size);
+/* Adds an iteration to the profile, whose driver, route and nodes are set; its bytes are then others,
+   in the newest format, and those before are not freed. False, and the reason: it is as it was. */
+bool profile_add(Profile *profile, const Lesson *lesson, char *why);
+/* Points to the values of each column behind iteration 0, 1, ...; NULL: all are zero. */
+void profile_past(const Profile *profile, int64_t iteration, const double **columns);
+/* The newest iteration that taught and is in force, 0: there is none. `undone`, from 0 to the number
+   of iterations, says which were undone since; it is changed. */
+int64_t profile_lesson_in_force(const Profile *profile, bool *undone);
 
 /* Between profile.c, which reads, and profile_history.c */
 

@@ -115,7 +115,7 @@ bool profile_same_history(const Profile *a, const Profile *b) {
 /* One more iteration */
 
 static bool piece_of_lesson(const Profile *p, const double *base, const Lesson *lesson, Piece *piece) {
-    IterationLine line = {(p->bytes ? p->count : 0) + 1, lesson->interventions, "drive", lesson->note,
+    IterationLine line = {(p->bytes ? p->count : 0) + 1, lesson->interventions, lesson->kind, lesson->note,
                           (int64_t)strlen(lesson->note)};
     if (!piece_make(piece, 1 + PROFILE_COLUMNS, PROFILE_COLUMNS, profile_stride(p->nodes))) return false;
     add_iteration(piece, &line);
@@ -160,12 +160,16 @@ static uint8_t *assemble(const Profile *p, const double *base, const Piece *old,
     return bytes;
 }
 
-uint8_t *profile_extend(const Profile *p, const Lesson *lesson, int64_t *size) {
+bool profile_add(Profile *p, const Lesson *lesson, char *why) {
     Piece old = {0}, new = {0};
+    Profile longer = {0};
     const double *base = p->bytes ? block_of(p, 0) : lesson->base;
     bool good = piece_of(p, &old) && piece_of_lesson(p, base, lesson, &new);
-    uint8_t *bytes = good ? assemble(p, base, &old, &new, size) : NULL;
+    longer.bytes = good ? assemble(p, base, &old, &new, &longer.size) : NULL;
     piece_free(&old);
     piece_free(&new);
-    return bytes;
+    if (!longer.bytes) return snprintf(why, REASON_SIZE, "not enough memory"), false;
+    if (!profile_parse(&longer, why)) return free(longer.bytes), false; /* what cannot be read back */
+    *p = longer;
+    return true;
 }

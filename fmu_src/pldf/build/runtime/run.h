@@ -34,6 +34,11 @@ void learning_follow(const Importer *importer, State *state, Run *run);
 /* The function's own recording (recording.c): finds its folder; writes it, or tells why not. */
 void recording_open(const Importer *importer, const State *state, Run *run);
 Level recording_save(const Importer *importer, const State *state, const Run *run);
+/* What the driver says (words.c): follow the newest iteration; answer what a step heard; add an
+   iteration for each word of the drive to `kept`, a copy of the stored profile. */
+void words_follow(State *state, Run *run);
+void words_answer(const Importer *importer, State *state, Run *run);
+bool words_keep(State *state, Run *run, Profile *kept, char *why);
 /* One line per intervention of a drive that was learned from: what became of it (outcome.c). */
 void outcome_tell(const Importer *importer, const State *state, const Run *run);
 /* Of a drive that ends, and that ended `before`; INFO, or what was told of what could not be kept. */

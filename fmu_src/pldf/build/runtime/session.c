@@ -132,6 +132,7 @@ static bool makes_sense(const Session *s, double time, double step_s) {
 bool session_step(Session *s, double time, double step_s) {
     if (!makes_sense(s, time, step_s)) return false;
     run_call(model.step, &s->state, &s->run, step_s);
+    words_answer(&s->importer, &s->state, &s->run);
     s->state.time = time + step_s;
     s->state.stale = 0;
     for (int i = 0; i < WATCHES; i++) watch(s, &model.watches[i], &s->state.told[i]);

@@ -160,24 +160,18 @@ static Level put(const Importer *importer, const char *path, const Profile *ours
 }
 
 Level store_save(const Importer *importer, const char *folder, const Profile *profile,
-                 const Lesson *lesson) {
-    char why[REASON_SIZE] = "not enough memory";
+                 const Profile *new, const char *what, const char *why) {
+    char reason[REASON_SIZE] = "";
     Lock lock;
-    Profile new = {0};
     Level level = ERROR_LEVEL;
     Place place = place_of(folder, profile);
-    new.bytes = profile_extend(profile, lesson, &new.size);
-    if (!new.bytes || !profile_parse(&new, why) || !disk_make_folder(place.folder, why) ||
-        disk_lock(place.folder, LOCK_PATIENCE_MS, &lock, why) != LOCK_DONE) {
-        /* nothing is written that cannot be read back */
-        importer_tell(importer, ERROR_LEVEL, "profile not saved: %s: %s", place.path, why);
+    if (why || !disk_make_folder(place.folder, reason) ||
+        disk_lock(place.folder, LOCK_PATIENCE_MS, &lock, reason) != LOCK_DONE) {
+        importer_tell(importer, ERROR_LEVEL, "profile not saved: %s: %s", place.path, why ? why : reason);
     } else {
-        level = put(importer, place.path, profile, &new);
+        level = put(importer, place.path, profile, new);
         disk_unlock(&lock);
     }
-    if (level == INFO)
-        importer_tell(importer, INFO, "drive %lld learned from %lld pedal interventions, saved in %s",
-                      (long long)new.count, (long long)lesson->interventions, place.path);
-    profile_free(&new);
+    if (level == INFO) importer_tell(importer, INFO, "%s, saved in %s", what, place.path);
     return level;
 }
