@@ -19,8 +19,11 @@ from .script_kernel import (
     CANCEL,
     DOWN,
     DOWN_LONG,
+    FORGET_HERE,
     GAS,
+    PAUSE,
     RESUME,
+    UNDO,
     UP,
     UP_LONG,
     ScriptArrays,
@@ -39,6 +42,9 @@ CONTROLS: Final = {
     "down": DOWN,
     "up_long": UP_LONG,
     "down_long": DOWN_LONG,
+    "pause": PAUSE,
+    "forget_here": FORGET_HERE,
+    "undo": UNDO,
 }
 PEDALS: Final = ("gas", "brake")
 SCRIPT: Final = Format(
@@ -114,7 +120,7 @@ def script_arrays(events: list[Event]) -> ScriptArrays:
 
 
 def _unfit_values(table: Table) -> Iterator[Fault]:
-    """Pedals need their travel; a lever contact is closed, so its value is empty or 1."""
+    """Pedals need their travel; a contact or button is closed, so its value is empty or 1."""
     controls, values = (table.numbers[name].tolist() for name in ("control", "value"))
     words = list(CONTROLS)
     for row, (control, value) in enumerate(zip(controls, values, strict=True)):
@@ -122,4 +128,4 @@ def _unfit_values(table: Table) -> Iterator[Fault]:
         if word in PEDALS and isnan(value):
             yield table.fault(row, "value", f"missing; {word} needs a number from 0 to 1")
         elif word not in PEDALS and not (isnan(value) or value == 1.0):
-            yield table.fault(row, "value", f"'{value:g}' for the lever; leave it empty")
+            yield table.fault(row, "value", f"'{value:g}' for {word}; leave it empty")

@@ -19,6 +19,7 @@ from pldf.kernel.signals import (
     real_input,
     real_output,
     real_parameter,
+    since,
     text_parameter,
 )
 from pldf.kernel.units import MPS_PER_KMH
@@ -179,6 +180,13 @@ class DriverOutputs:
     lever_down: int = flag_output("Lever: set speed down, short tip", held=True)
     lever_up_long: int = flag_output("Lever: set speed up, long tip", held=True)
     lever_down_long: int = flag_output("Lever: set speed down, long tip", held=True)
+    teach_pause: int = since("0.3", flag_output("Nothing is to be learned while true", held=True))
+    teach_forget_here: int = since(
+        "0.3", flag_output("Forget what was learned here (rising edge)", held=True)
+    )
+    teach_undo: int = since(
+        "0.3", flag_output("Take the newest lesson back (rising edge)", held=True)
+    )
 
 
 @dataclass

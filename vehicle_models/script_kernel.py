@@ -10,7 +10,7 @@ from pldf.kernel.ranges import TIME_MAX_NS, Range
 from .clock import NS_PER_S
 from .driver_state import DriverState
 
-# Control codes of a script; those from RESUME on are the lever's contacts.
+# Control codes of a script; those from RESUME to DOWN_LONG are the lever's contacts.
 GAS: Final = 1
 BRAKE: Final = 2
 RESUME: Final = 3
@@ -19,6 +19,10 @@ UP: Final = 5
 DOWN: Final = 6
 UP_LONG: Final = 7
 DOWN_LONG: Final = 8
+# The driver's last word: buttons of the cabin.
+PAUSE: Final = 9
+FORGET_HERE: Final = 10
+UNDO: Final = 11
 
 AT_TIME: Final = 0
 AT_POSITION: Final = 1
@@ -31,8 +35,8 @@ class ScriptArrays(NamedTuple):
 
     at: Floats  # s or m
     unit: Annotated[Floats, Range(0, 1)]  # AT_TIME or AT_POSITION
-    control: Annotated[Floats, Range(1, 8)]  # control code
-    value: Annotated[Floats, Range(0, 1)]  # pedal travel; 1 for the lever
+    control: Annotated[Floats, Range(1, 11)]  # control code
+    value: Annotated[Floats, Range(0, 1)]  # pedal travel; 1 for lever and buttons
     duration_s: Floats
     began_ns: Annotated[Floats, Range(-1, TIME_MAX_NS)]  # when it began, -1 = not yet
 
@@ -62,10 +66,13 @@ def _beginning_ns(st: DriverState, script: ScriptArrays, k: int) -> float:
 
 
 def release_all(st: DriverState) -> None:
-    """Let go of pedals and lever."""
+    """Let go of pedals, lever and buttons."""
     st.driver_gas_pedal = 0.0
     st.driver_brake_pedal = 0.0
     release_lever(st)
+    st.teach_pause = 0
+    st.teach_forget_here = 0
+    st.teach_undo = 0
 
 
 def release_lever(st: DriverState) -> None:
@@ -79,11 +86,17 @@ def release_lever(st: DriverState) -> None:
 
 
 def operate(st: DriverState, control: int, value: float) -> None:
-    """Press a pedal to at least ``value`` or close one of the lever's contacts."""
+    """Press a pedal to at least ``value``, close one of the lever's contacts or hold a button."""
     if control == GAS:
         st.driver_gas_pedal = max(st.driver_gas_pedal, value)
     elif control == BRAKE:
         st.driver_brake_pedal = max(st.driver_brake_pedal, value)
+    elif control == PAUSE:
+        st.teach_pause = 1
+    elif control == FORGET_HERE:
+        st.teach_forget_here = 1
+    elif control == UNDO:
+        st.teach_undo = 1
     else:
         hold_lever(st, control)
 

@@ -51,6 +51,7 @@ WIRES = {
         f"pldf.lever.{contact}": f"driver.lever.{contact}"
         for contact in ("resume", "cancel", "up", "down", "up_long", "down_long")
     },
+    **{f"pldf.teach.{word}": f"driver.teach.{word}" for word in ("pause", "forget_here", "undo")},
 }
 
 
@@ -98,7 +99,7 @@ def test_every_input_is_fed_by_the_output_of_its_name(fmus: dict[str, Fmu]) -> N
     found = {".".join(target): ".".join(source) for source, target in connections(fmus)}
     assert found == WIRES
     inputs = {f"{part}.{s.name}" for part, fmu in fmus.items() for s in fmu.named("input")}
-    asked = {"teach.pause", "teach.forget_here", "teach.undo", "eligible", "limit.override_mps"}
+    asked = {"eligible", "limit.override_mps"}
     outside = {"lead.present", "lead.gap_m", "lead.speed_mps", "vehicle.x_m", "vehicle.y_m"}
     assert inputs - set(found) == {f"pldf.{name}" for name in asked | outside}
 

@@ -19,6 +19,7 @@ LEVER = (
     "lever_up_long",
     "lever_down_long",
 )
+BUTTONS = ("teach_pause", "teach_forget_here", "teach_undo")
 PEDALS = ("driver_gas_pedal", "driver_brake_pedal")
 
 
@@ -52,7 +53,7 @@ def watch(someone: ScriptedDriver, seconds: float, **inputs: float) -> list[dict
     seen = []
     for _ in range(round(seconds / STEP_S)):
         someone.step(STEP_S)
-        seen.append({name: getattr(someone.record, name) for name in (*PEDALS, *LEVER)})
+        seen.append({name: getattr(someone.record, name) for name in (*PEDALS, *LEVER, *BUTTONS)})
     return seen
 
 

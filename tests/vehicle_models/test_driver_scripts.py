@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from driver_watch import LEVER, PEDALS, STEP_S, driver, first, presses, watch
+from driver_watch import BUTTONS, LEVER, PEDALS, STEP_S, driver, first, presses, watch
 from pldf.errors import ModelError
 
 from vehicle_models.driver_script import CONTROLS, PACKED, packed_script, read_script
@@ -23,10 +23,11 @@ def test_every_control_is_operated_for_its_time(tmp_path: Path, control: str) ->
     value = "0.4" if control in ("gas", "brake") else ""
     someone = driver(script_file=script(tmp_path, f"0.5,s,{control},{value},0.3"), kind=1)
     seen = watch(someone, 2.0)
-    name = f"driver_{control}_pedal" if control in ("gas", "brake") else f"lever_{control}"
+    outputs = (*PEDALS, *LEVER, *BUTTONS)
+    (name,) = {f"driver_{control}_pedal", f"lever_{control}", f"teach_{control}"} & {*outputs}
     assert first(seen, name) == pytest.approx(0.5)
     assert [row[name] for row in seen].count(0.4 if value else 1) == 30
-    assert not any(row[other] for row in seen for other in (*PEDALS, *LEVER) if other != name)
+    assert not any(row[other] for row in seen for other in outputs if other != name)
 
 
 def test_events_by_position_happen_once(tmp_path: Path) -> None:
@@ -58,7 +59,7 @@ def test_order_does_not_matter_and_the_stronger_pedal_wins(tmp_path: Path) -> No
         ("1,s,gas,,1", "line 3, value: missing; gas needs a number from 0 to 1"),
         ("1,s,gas,NA,1", "line 3, value: missing; gas needs a number from 0 to 1"),
         ("1,s,gas,inf,1", "line 3, value: 'inf' is not a number"),
-        ("1,s,up,0.5,1", "line 3, value: '0.5' for the lever; leave it empty"),
+        ("1,s,up,0.5,1", "line 3, value: '0.5' for up; leave it empty"),
         ("1,s,gas,0.2,0", "line 3, duration_s: '0' is not a number from 0.001"),
         ("1,s,gas", "line 3: 3 values for 5 columns"),
     ],
