@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from pldf.errors import ModelError
+from pldf.kernel.codes import LEARN_CONSISTENT
 from pldf.roads import packed_route, write_route_csv
 from pldf.study.participants import DRIVER_SIGNALS
 from pldf.study.participants_file import participants_csv, read_participants
@@ -70,6 +71,7 @@ def test_everything_can_be_said(tmp_path: Path) -> None:
         recordings.participants = ["P003", "P001"]
         road.route = "road.csv"
         [function]
+        learn = "CONSISTENT"
         "learning.stretch_factor" = 0.75
         "learning.stretch_time_mode" = "CONSTANT_SPEED"
         [vehicle]
@@ -83,7 +85,9 @@ def test_everything_can_be_said(tmp_path: Path) -> None:
     learns = [(p.apply_learned, p.learn, p.intervenes) for p in said.settings.phases]
     assert learns == [PHASES["A2"][1:]] * 3 + [PHASES["B1"][1:]] * 3
     assert said.settings.counterbalanced
+    assert said.settings.learn == LEARN_CONSISTENT
     assert said.settings.function == {
+        "learn": LEARN_CONSISTENT,
         "learning.stretch_factor": 0.75,
         "learning.stretch_time_mode": 1,
     }
@@ -129,7 +133,9 @@ ERRORS = {
     '[function]\n"learning.stretch" = 9.0': (
         "line 2, function.learning.stretch: unknown; did you mean learning.stretch"
     ),
-    "[function]\nlearn = 1": "line 2, function.learn: unknown",
+    "[function]\nlearn_faithful = true": "line 2, function.learn_faithful: unknown",
+    "[function]\nlearn = 1": 'line 2, function.learn: 1 must be one of "OFF", "FAITHFUL", ',
+    '[function]\nlearn = "OFF"': 'line 2, function.learn: "OFF": the drives say whether they learn',
     '[function]\n"learning.stretch_time_mode" = "NO"': (
         'line 2, function.learning.stretch_time_mode: "NO" must be one of "RECORDED", '
     ),

@@ -28,7 +28,8 @@ from .shared.telling import tell
 
 EXAMPLE: Final = (
     "pldf learn --route study --recording out/recordings/P001_A2.csv --out a2.pldf\n"
-    "  pldf learn --route study --recording b1.csv --profile-in a2.pldf --out b1.pldf --json"
+    "  pldf learn --route study --recording b1.csv --profile-in a2.pldf --out b1.pldf --json\n"
+    "  pldf learn --route study --recording b1.csv --out b1.pldf --set learn=CONSISTENT"
 )
 
 

@@ -10,6 +10,7 @@ from vehicle_models.driver_state import DriverState
 
 from ..cosim.drive_limits import STEP_S
 from ..cosim.values import FmuMessage, Value
+from ..kernel.codes import LEARN_FAITHFUL
 from ..kernel.signals import Signal, signals_of
 from ..profiles.store import Iteration
 from ..recordings.recording import Recording
@@ -78,6 +79,11 @@ class StudySettings:
     def route(self) -> Route:
         """The route of every drive."""
         return self.road.route
+
+    @property
+    def learn(self) -> int:
+        """How the drives learn that do (LEARN in ``kernel.codes``)."""
+        return int(self.function.get("learn", LEARN_FAITHFUL))
 
 
 @dataclass(frozen=True, eq=False)

@@ -75,6 +75,7 @@ class DriveSetting:
         store: folder of profiles; None: the environment decides.
         more: further values by part; they win.
         traffic: values of the car ahead; None: there is none.
+        learn: how the drives learn that do (LEARN in ``kernel.codes``).
     """
 
     route: Route
@@ -84,6 +85,7 @@ class DriveSetting:
     store: Path | None = None
     more: Values = field(default_factory=dict)
     traffic: Mapping[str, Value] | None = None
+    learn: int = LEARN_FAITHFUL
 
     @property
     def length_m(self) -> float:
@@ -100,7 +102,7 @@ def values_of(phase: Phase, setting: DriveSetting) -> dict[str, dict[str, Value]
         **setting.road,
         "driver_id": setting.driver_id,
         "apply_learned": int(phase.apply_learned),
-        "learn": LEARN_FAITHFUL if phase.learn else LEARN_OFF,
+        "learn": setting.learn if phase.learn else LEARN_OFF,
     }
     if setting.store is not None:
         pldf["profile_store"] = str(setting.store.resolve())

@@ -36,7 +36,7 @@ from ..errors import ModelError
 from ..function import DrivingFunction, follow_newest, next_iteration
 from ..instance import Instance, zeros
 from ..kernel.arrays import FloatArray, NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
-from ..kernel.codes import LEARN_FAITHFUL, LEARN_OFF, OFF, STANDBY
+from ..kernel.codes import LEARN_OFF, OFF, STANDBY
 from ..kernel.signals import signals_of
 from ..kernel.state import PldfState
 from ..profiles.store import Iteration, StoredProfile
@@ -187,7 +187,7 @@ class Simulation:
         st = pack(self.function.record)
         st["driver_id"] = stored.driver_id
         st["apply_learned"] = phase.apply_learned
-        st["learn"] = LEARN_FAITHFUL if phase.learn else LEARN_OFF
+        st["learn"] = self.settings.learn if phase.learn else LEARN_OFF
         st["mode"] = STANDBY if self.function.record.main_switch else OFF
         st["profile_iteration"] = len(stored.iterations)
         return st

@@ -14,6 +14,7 @@ from vehicle_models.vehicle_state import VehicleState
 
 from ..errors import ModelError
 from ..findings import Finding
+from ..kernel.codes import LEARN_FAITHFUL, LEARN_OFF
 from ..kernel.signals import Signal, signals_of
 from ..kernel.state import PldfState
 from ..roads import Road, RoadOptions, open_road
@@ -32,8 +33,8 @@ ONE_DRIVER: Final = "one_driver"
 PACKAGED: Final = Path(__file__).parent / "studies"
 # Parameters that follow from the study file's other keys.
 _NOT_TO_SET: Final = (
-    "apply_learned", "driver_id", "learn", "learn_faithful", "localization", "main_switch",
-    "route_id", "start_s_m",
+    "apply_learned", "driver_id", "learn_consistent", "learn_faithful", "localization",
+    "main_switch", "route_id", "start_s_m",
 )  # fmt: skip
 
 
@@ -121,7 +122,7 @@ def read_study(path: Path, changes: Mapping[Key, Any] | None = None) -> Study:
         road=_road(file, tables, typed=bool(changes)),
         phases=_phases(file, tables),
         counterbalanced=tables.drives.order == "counterbalanced",
-        function=_parameters(file, "function", SETTABLE["function"]),
+        function=_function(file),
         vehicle=_parameters(file, "vehicle", SETTABLE["vehicle"]),
         step_s=tables.drives.step_s,
         recorded=_recorded(file, tables, [person.id for person in people]),
@@ -162,6 +163,18 @@ def _parameters(file: TomlFile, table: str, known: Mapping[str, Signal]) -> dict
         name: _coded(known[name], getattr(read, known[name].field))
         for name in file.table.get(table, {})
     }
+
+
+def _function(file: TomlFile) -> dict[str, float | int]:
+    """Return the parameters of the driving function; ``learn`` is how drives learn that do."""
+    values = _parameters(file, "function", SETTABLE["function"])
+    if values.get("learn", LEARN_FAITHFUL) == LEARN_OFF:
+        file.fail(
+            ("function", "learn"),
+            '"OFF": the drives say whether they learn, this says how: write "FAITHFUL" or '
+            '"CONSISTENT", or choose drives that do not learn in [drives], such as A1',
+        )
+    return values
 
 
 def _uncoded(signal: Signal, text: str) -> Any:

@@ -55,8 +55,10 @@ class _Driver:
             road=road_values(settings.road, folder),
             driver_id=participant.number,
             store=folder,
+            learn=settings.learn,
             more={
-                "pldf": settings.function,
+                # Whether a drive learns at all is a matter of its phase.
+                "pldf": {k: v for k, v in settings.function.items() if k != "learn"},
                 "vehicle": settings.vehicle,
                 "driver": {
                     DRIVER_SIGNALS[name].name: participant.value(name)
