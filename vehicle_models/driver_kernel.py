@@ -13,6 +13,7 @@ from pldf.kernel.codes import ACTIVE, GAS_OVERRIDE
 from pldf.kernel.interpolation import cell_at, value_at
 from pldf.kernel.substeps import substep_count
 
+from .ahead_kernel import has_to_wave_on, is_blocked, is_in_danger
 from .chance import draw, sow
 from .clock import NS_PER_S, to_ns
 from .driver_state import AWAY, HANDS_OFF, ON_BRAKE, ON_GAS, SCRIPT, WATCHING, DriverState
@@ -92,6 +93,8 @@ def _perceives(st: DriverState) -> bool:
 
 def _decide(st: DriverState, wish: WishArrays, passed_ns: int) -> None:
     """One table of phases: what is done now, and which phase comes next."""
+    if has_to_wave_on(st):
+        _press(st, RESUME)
     if st.kind == HANDS_OFF:
         if st.was_active == 0:
             _activate(st)
@@ -183,8 +186,10 @@ def _urge(st: DriverState, wish: WishArrays) -> int:
     """Tell which pedal (1 gas, -1 brake, 0 none) the deviation from the wish calls for.
 
     Both the deviation now and the one expected after the reaction time must exceed the threshold,
-    and the function must not be under way to a speed that will do.
+    and the function must not be under way to a speed that will do. A car ahead comes first.
     """
+    if is_in_danger(st):
+        return -1
     speed = st.vehicle_speed_mps
     acceleration = st.vehicle_acceleration_mps2
     here = value_at(wish.wish_mps, st.vehicle_s_m)
@@ -193,7 +198,7 @@ def _urge(st: DriverState, wish: WishArrays) -> int:
     aim = here - st.target_speed_mps
     if min(here - speed, there - soon) > st.driver_threshold_mps:
         helps = acceleration > UNDER_WAY_MPS2 and aim <= st.driver_threshold_mps
-        return 0 if helps else 1
+        return 0 if helps or is_blocked(st) else 1
     if min(speed - here, soon - there) > st.driver_threshold_mps:
         helps = acceleration < -UNDER_WAY_MPS2 and aim >= -st.driver_threshold_mps
         return 0 if helps else -1
@@ -202,7 +207,7 @@ def _urge(st: DriverState, wish: WishArrays) -> int:
 
 def _lever_will_do(st: DriverState, wish: WishArrays) -> bool:
     """Tell whether the set speed is off the wish at a place where the lever is used."""
-    if st.driver_uses_lever == 0 or st.limit_mps <= 0.0 or st.mode != ACTIVE:
+    if st.driver_uses_lever == 0 or st.limit_mps <= 0.0 or st.mode != ACTIVE or is_blocked(st):
         return False
     needed = 0.5 * st.driver_lever_step_mps if st.tipping != 0 else st.driver_threshold_mps
     if abs(_set_speed_error(st)) <= max(needed, 0.5 * st.driver_lever_step_mps):

@@ -14,6 +14,7 @@ from pldf.kernel.ranges import flag, nanoseconds, number, whole
 from pldf.kernel.signals import (
     count_input,
     count_parameter,
+    flag_input,
     flag_output,
     flag_parameter,
     real_input,
@@ -166,6 +167,14 @@ class DriverInputs:
         "Legal limit here, 0 = unknown (then the lever is not used)",
         "m/s", start=0.0, low=0.0, high=150.0,
     )  # fmt: skip
+    lead_present: int = since("0.3", flag_input("There is a car ahead", start=False))
+    lead_gap_m: float = since(
+        "0.3",
+        real_input("Gap to it, bumper to bumper", "m", start=0.0, low=-1e4, high=1e6),
+    )
+    lead_speed_mps: float = since(
+        "0.3", real_input("Its speed", "m/s", start=0.0, low=-10.0, high=150.0)
+    )
 
 
 @dataclass
@@ -208,6 +217,7 @@ class DriverMemory:
     button: int = whole(0, 8)  # control code of the lever contact held, 0 = none
     button_ns: int = nanoseconds()  # since it was pressed
     settled_ns: int = nanoseconds()  # since the car cruises at the set speed
+    stood_behind: int = flag()  # the car stands behind one that stood
     tipping: int = flag()  # a series of tips has begun
     random: float = number(1.0, 2147483646.0, start=1.0)  # MINSTD, a whole number
     invalid_input: int = flag()

@@ -15,6 +15,7 @@ from pldf.kernel import interpolation, planner, substeps
 from pldf.kernel.arrays import RouteArrays, Work
 
 from . import (
+    ahead_kernel,
     chance,
     clock,
     driver_kernel,
@@ -99,6 +100,7 @@ DRIVER: Final = NativeModel(
     record=DriverState,
     texts=DriverTexts,
     modules=(
+        ahead_kernel,
         chance,
         clock,
         driver_kernel,

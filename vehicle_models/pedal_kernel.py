@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from pldf.kernel.interpolation import value_at
 
+from .ahead_kernel import ALONE_BRAKES_MPS2, is_blocked, needed_brake_mps2
 from .driver_state import DriverState
 from .wish_kernel import SLOWEST_MPS, WishArrays, wish_acceleration
 
@@ -27,7 +28,7 @@ def gas_towards_wish(st: DriverState, wish: WishArrays, step_s: float) -> bool:
     trend = wish_acceleration(wish, st.vehicle_s_m)
     error = aim - st.vehicle_speed_mps
     demand = trend + st.driver_speed_gain_per_s * error
-    if error <= 0.0 or demand < -TURN_MPS2:
+    if error <= 0.0 or demand < -TURN_MPS2 or is_blocked(st):
         st.releasing = 1
     demand = max(WEAKEST_MPS2, min(demand, st.wish_accel_max_mps2))
     correction = (demand - st.vehicle_acceleration_mps2) / st.driver_gas_gain_mps2
@@ -42,10 +43,14 @@ def brake_towards_wish(st: DriverState, wish: WishArrays, step_s: float) -> bool
     trend = wish_acceleration(wish, st.vehicle_s_m)
     error = st.vehicle_speed_mps - aim
     demand = st.driver_speed_gain_per_s * error - trend
-    if (error <= 0.0 and trend > -TURN_MPS2) or demand < -TURN_MPS2:
+    needed = needed_brake_mps2(st)
+    if needed > ALONE_BRAKES_MPS2:
+        st.releasing = 0
+    elif (error <= 0.0 and trend > -TURN_MPS2) or demand < -TURN_MPS2:
         st.releasing = 1
-    # The wish's own strength holds at the wish; a driver who is late brakes harder.
-    demand = max(WEAKEST_MPS2, min(demand, -2.0 * st.wish_accel_min_mps2))
+    # The wish's own strength holds at the wish; a driver who is late brakes harder, and as hard as
+    # a car ahead needs it.
+    demand = max(WEAKEST_MPS2, min(demand, -2.0 * st.wish_accel_min_mps2), needed)
     correction = (demand + st.vehicle_acceleration_mps2) / st.driver_brake_gain_mps2
     st.driver_brake_pedal = _moved(st, st.driver_brake_pedal, correction, step_s)
     return st.driver_brake_pedal <= 0.0

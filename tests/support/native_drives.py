@@ -164,6 +164,9 @@ def driver_inputs(rng: np.random.Generator, step_s: Table) -> dict[str, Table]:
         "target_speed_mps": with_nonsense(rng, 20.0 + 3.0 * rng.standard_normal(STEPS)),
         "set_speed_mps": np.repeat(rng.uniform(0.0, 40.0, STEPS // 100), 100),
         "limit_mps": np.repeat(rng.choice([50.0, 70.0, 100.0], STEPS // 200) / 3.6, 200),
+        "lead_present": pressed(rng, 300, 200),
+        "lead_gap_m": with_nonsense(rng, 80.0 * rng.random(STEPS)),
+        "lead_speed_mps": with_nonsense(rng, np.repeat(rng.uniform(0.0, 25.0, STEPS // 100), 100)),
     }
 
 

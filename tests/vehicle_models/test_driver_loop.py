@@ -19,6 +19,7 @@ from pldf.kernel.arrays import RouteArrays, Work
 from pldf.kernel.codes import ACTIVE, FAULT, GAS_OVERRIDE, LEARN_FAITHFUL, STANDBY
 
 from vehicle_models import (
+    ahead_kernel,
     chance,
     clock,
     driver_kernel,
@@ -31,7 +32,7 @@ from vehicle_models.vehicle import LongitudinalVehicle
 from vehicle_models.wish_kernel import WishArrays
 
 MODULES = (
-    chance, clock, interpolation, substeps, planner,
+    ahead_kernel, chance, clock, interpolation, substeps, planner,
     wish_kernel, script_kernel, pedal_kernel, driver_kernel,
 )  # fmt: skip
 SEEN = ("mode", "target_speed_mps", "set_speed_mps", "limit_mps")

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehicle_models import (
+    ahead_kernel,
     chance,
     clock,
     driver_kernel,
@@ -52,7 +53,15 @@ from .phases import HANDS_OFF, PHASES, PREFERENCE, SCRIPT, Phase, seed_of_drive
 
 Packed = NDArray[np.void]
 
-DRIVER_MODULES: Final = (chance, clock, driver_kernel, pedal_kernel, script_kernel, wish_kernel)
+DRIVER_MODULES: Final = (
+    ahead_kernel,
+    chance,
+    clock,
+    driver_kernel,
+    pedal_kernel,
+    script_kernel,
+    wish_kernel,
+)
 COMPILED_MODULES: Final = (*KERNEL_MODULES, vehicle_kernel, *DRIVER_MODULES, loop)
 
 
