@@ -19,7 +19,7 @@ from ..kernel.codes import LEARN
 from ..kernel.units import KMH_PER_MPS
 from ..outcome_words import is_outcome
 from ..profiles.store import STORE_VARIABLE, ProfileStore
-from ..recordings.recording import write_recording
+from ..recordings.recording import Recording, write_recording
 from ..roads import fingerprint
 from ..study.phases import (
     PHASES,
@@ -50,6 +50,7 @@ EXAMPLE: Final = (
 )
 
 _BY_ITSELF: Final = Path()  # --traffic without a script
+_DRIVING_MPS: Final = 5.0  # below, a time gap says nothing
 _CHANGED_MPS: Final = 0.1 / KMH_PER_MPS  # smaller changes do not count as learned
 
 
@@ -117,6 +118,8 @@ def run(options: argparse.Namespace) -> None:
     print(f"recording  {csv}")
     _plot(options.plot or csv.with_suffix(".png"), done, phase.name)
     _print_rates(done)
+    if options.traffic is not None:
+        _print_traffic(done.recording)
     require_no_errors(done.messages)
     if phase.learn:
         _print_outcomes(done)
@@ -186,6 +189,26 @@ def _print_rates(done: Drive) -> None:
         f"combined {rates['rate.combined']:.1%}"
     )
     print(f"pedal      {rates['drive.interventions']:.0f} interventions")
+
+
+def _print_traffic(recording: Recording) -> None:
+    """Print how much traffic there was, and how close it came."""
+    there = recording["lead_present"] > 0.0
+    if not there.any():
+        print("traffic    no car was ahead")
+        return
+    gap_m, speed_mps = recording["lead_gap_m"][there], recording["speed_mps"][there]
+    limits = recording["following_limits"] > 0.0
+    print(
+        f"traffic    a car ahead for {np.mean(there):.0%} of the time, it limited ours for "
+        f"{np.mean(limits):.0%}; smallest gap {np.min(gap_m):.1f} m"
+    )
+    moving = speed_mps > _DRIVING_MPS
+    if moving.any():
+        print(f"           smallest time gap {np.min(gap_m[moving] / speed_mps[moving]):.1f} s")
+    calls = int(np.sum(np.diff(recording["hmi_take_over"], prepend=0.0) > 0.0))
+    if calls:
+        print(f"           the driver was asked to take over: {calls} times")
 
 
 def _print_outcomes(done: Drive) -> None:
