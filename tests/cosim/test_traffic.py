@@ -1,4 +1,4 @@
-"""The coupled FMUs with a car ahead: how they drive behind it, and that they learn nothing there."""
+"""The coupled FMUs with a car ahead: how they drive behind it; nothing is learned there."""
 
 from __future__ import annotations
 
