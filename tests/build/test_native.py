@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 import sys
 from pathlib import Path
+from shutil import rmtree
 from typing import Any
 
 import pytest
-from fmi_host import Host
+from fmi3_host import Host3, Slave3
+from fmi_host import Host, Slave
 from pldf.cosim.fmu import Fmu
 from pldf.cosim.master import drive
 from pldf.recordings.recording import write_recording
@@ -101,14 +103,43 @@ def reason(host: Host, location: str | None = None, **values: Any) -> str:
     ],
 )
 def test_finds_the_resources_by_address(native_folder: Path, location: str, path: str) -> None:
-    text = reason(Host(native_folder / "AdaptivePLDF.fmu"), location)
-    assert text.startswith(f"{path}route/0.prepared: ")
+    text = reason(Host(native_folder / "AdaptivePLDF.fmu"), location, route_id=999)
+    assert text.startswith(f"{path}route/999.prepared: ")
 
 
-def test_tells_that_there_are_no_resources(native_folder: Path) -> None:
-    host = Host(native_folder / "AdaptivePLDF.fmu")
+def test_tells_that_there_are_no_resources(native_folder: Path, tmp_path: Path) -> None:
+    host = Host(native_folder / "AdaptivePLDF.fmu", tmp_path)
+    rmtree(tmp_path / "resources")
     for location in ("file:", "file:///" + "x" * 4096):
         assert "named no folder of resources" in reason(host, location)
+        assert "none beside this library" in reason(host, location)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("model", ["AdaptivePLDF", "ScriptedDriver"])
+def test_finds_its_own_resources_where_the_importer_names_none(
+    model: str, version: int, native_folder: Path, tmp_path: Path
+) -> None:
+    """NULL, an empty text, an empty folder, a wrong one, and a path that is too long."""
+    host: Host = (Host, Host3)[version - 2](
+        native_folder / ("fmi3" if version == 3 else "") / f"{model}.fmu", tmp_path / "ä 100 %"
+    )
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    outputs = []
+    address = "file://" if version == 2 else ""
+    wrong = (f"{address}{empty}", f"{address}{tmp_path}/nowhere", f"{address}/{'x' * 4096}")
+    for location in (f"{address}{host.folder}/resources", None, "", *wrong):
+        slave = (Slave, Slave3)[version - 2](host, "one", location)
+        slave.start(**({"kind": 1} if model == "ScriptedDriver" else {}))
+        outputs.append(slave.outputs())
+        told = [
+            text for text in slave.texts("logEvents") if "0.prepared: not in the folder" in text
+        ]
+        assert len(told) == (len(outputs) > 1)
+        assert all(f"{host.folder}/resources".replace("%", "%" * (4 - version)) in t for t in told)
+        slave.free()
+    assert all(found == outputs[0] for found in outputs)
 
 
 def test_tells_how_a_script_is_prepared(native_folder: Path) -> None:

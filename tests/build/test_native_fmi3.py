@@ -122,14 +122,16 @@ def test_refuses_to_be_instantiated(host: Host3, changes: dict[str, Any], text: 
     assert text in slave.texts()[0]
 
 
-def test_an_instance_needs_a_name_and_no_resources(host: Host3) -> None:
+def test_an_instance_needs_a_name_and_no_address_of_resources(host: Host3) -> None:
     slave = Slave3(host, "", None)
     assert not slave.fmu.component
     assert slave.texts() == ["the instance needs a name"]
     slave = Slave3(host, "C:\\a name", None)
-    slave.fmu.enterInitializationMode(startTime=0.0)
-    assert slave.status("exitInitializationMode") == 3
-    assert "named no folder of resources" in slave.texts()[0]
+    slave.start()
+    assert slave.texts("logEvents") == [
+        "route/0.prepared: not in the folder of resources that the importer named (none), so it is "
+        f"read from {host.folder}/resources"
+    ]
     slave.free()
 
 

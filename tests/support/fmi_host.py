@@ -28,7 +28,7 @@ class Slave:
 
     SUFFIX: ClassVar = {"Enumeration": "Integer"}  # of fmpy's get and set; else the type's name
 
-    def __init__(self, host: Host, name: str | bytes, location: str) -> None:
+    def __init__(self, host: Host, name: str | bytes, location: str | None) -> None:
         self.log: list[tuple[int, str, str]] = []  # status, category, text
         self.variables = {v.name: v for v in host.description.modelVariables}
         model = host.description
@@ -45,7 +45,7 @@ class Slave:
             name.encode() if isinstance(name, str) else name,
             fmi.fmi2CoSimulation,
             model.guid.encode(),
-            location.encode(),
+            location.encode() if location is not None else None,
             byref(self._callbacks),
             fmi.fmi2False,
             fmi.fmi2True,

@@ -49,7 +49,7 @@ def link(folder: Path, runtime: Path, target: str, name: str, announce: Announce
     (folder / target).mkdir()
     program = zig(target, *FLAGS, f"-I{HEADERS}", f"-I{runtime}", "-I.", "-o", library)
     if TARGETS[target].suffix == ".so":
-        program += ["-fPIC", "-Wl,-z,defs", "-Wl,--build-id=none", "-lm"]
+        program += ["-fPIC", "-Wl,-z,defs", "-Wl,--build-id=none", "-lm", "-ldl"]
     elif TARGETS[target].suffix == ".dylib":
         program += [f"-Wl,-install_name,@rpath/{library.name}"]
     program += [*map(str, sorted(runtime.glob("*.c"))), "table.c", f"{target}.o"]

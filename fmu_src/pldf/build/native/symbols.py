@@ -13,9 +13,10 @@ from .linking import HEADERS
 lief.logging.disable()
 
 _DECLARED: Final = re.compile(r"FMI\d_Export\s+\w+\s+(fmi\d\w+);")
-# Libraries of the system that may be needed: C library with libm; on Windows also the kernel's.
+# Libraries of the system that may be needed: C library with libm and, before glibc 2.34, libdl; on
+# Windows also the kernel's.
 _SYSTEM: Final = re.compile(
-    r"libc\.so\.6|libm\.so\.6|/usr/lib/libSystem\.B\.dylib|KERNEL32\.dll|api-ms-win-crt-.*\.dll"
+    r"lib(c|m)\.so\.6|libdl\.so\.2|/usr/lib/libSystem\.B\.dylib|KERNEL32\.dll|api-ms-win-crt-.*\.dll"
 )
 # zig exports its own names of the library's head on macOS; each library may have them.
 _HEAD: Final = frozenset({"_mh_dylib_header", "__dso_handle"})

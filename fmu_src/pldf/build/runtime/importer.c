@@ -62,3 +62,34 @@ void importer_set_resources(Importer *importer, const char *address) {
     while (length > 1 && (path[length - 1] == '/' || path[length - 1] == '\\')) length--;
     path[*at ? 0 : length] = 0;
 }
+
+/* Of binaries/PLATFORM/NAME beside it. */
+static bool own_resources(char *folder) {
+    static const char name[] = "resources";
+    if (!os_own_library(folder)) return false;
+    for (char *at = folder; *at; at++)
+        if (strchr(os_separators, *at)) *at = '/';
+    for (int level = 0; level < 3; level++) {
+        char *end = strrchr(folder, '/');
+        if (!end) return false;
+        end[level == 2] = 0; /* the last one stays */
+    }
+    size_t length = strlen(folder);
+    if (length + sizeof name > PATH_SIZE) return false;
+    memcpy(folder + length, name, sizeof name);
+    return os_entry(folder) == FOLDER;
+}
+
+bool importer_resource(const Importer *importer, const char *name, char *path, size_t size) {
+    char own[PATH_SIZE];
+    const char *given = importer->resources;
+    snprintf(path, size, "%s/%s", given, name);
+    if ((*given && os_entry(path) != NO_ENTRY) || !own_resources(own)) return *given;
+    char found[PATH_SIZE + 64];
+    snprintf(found, sizeof found, "%s/%s", own, name);
+    if (*given && os_entry(found) == NO_ENTRY) return true; /* it is nowhere: the importer's is told */
+    snprintf(path, size, "%s", found);
+    importer_tell(importer, INFO, "%s: not in the folder of resources that the importer named (%s), so "
+                                  "it is read from %s", name, *given ? given : "none", own);
+    return true;
+}

@@ -27,3 +27,6 @@ bool importer_log(Importer *importer, bool on, size_t count, const char *const c
 /* Of file:///p, file:////p, file:/p, file://C:/p, or plain; with a slash at the end; with %20. It
    stays empty if it is too long. */
 void importer_set_resources(Importer *importer, const char *address);
+/* Where a file of the resources is: in the importer's folder or, if it is not there, in that of the
+   archive which this library was unpacked from; then the importer is told. False: there is no folder. */
+bool importer_resource(const Importer *importer, const char *name, char *path, size_t size);

@@ -38,4 +38,5 @@ void os_wait_ms(int ms);
 bool os_reason(char *why); /* of what failed last; false */
 /* Of a store's folder; false if the path is too long or no text of this system. */
 bool os_absolute(const char *path, char *absolute, char *why);
+bool os_own_library(char *path); /* PATH_SIZE bytes: the file that this code was loaded from */
 bool os_environment(const char *name, char *value); /* true, and cut or empty: cannot be used */

@@ -1,6 +1,7 @@
 #ifndef _WIN32
 #define _GNU_SOURCE
 #include <dirent.h>
+#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -144,6 +145,12 @@ bool os_absolute(const char *path, char *absolute, char *why) {
     long long length = snprintf(absolute, PATH_SIZE, "%s%s%s", here, *here ? "/" : "", path);
     snprintf(why, REASON_SIZE, "%lld bytes long, at most %d are possible", length, FOLDER_SIZE - 1);
     return length < FOLDER_SIZE;
+}
+
+bool os_own_library(char *path) {
+    Dl_info found;
+    if (!dladdr(os_separators, &found) || !found.dli_fname) return false;
+    return snprintf(path, PATH_SIZE, "%s", found.dli_fname) < PATH_SIZE;
 }
 
 bool os_environment(const char *name, char *value) {

@@ -140,6 +140,14 @@ bool os_absolute(const char *path, char *absolute, char *why) {
     return good && bytes < FOLDER_SIZE;
 }
 
+bool os_own_library(char *path) {
+    HMODULE module;
+    Wide found;
+    DWORD flags = GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS | GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT;
+    return GetModuleHandleExW(flags, (const wchar_t *)os_separators, &module) &&
+           narrow(GetModuleFileNameW(module, found, PATH_SIZE), found, path);
+}
+
 bool os_environment(const char *name, char *value) {
     Wide w, found;
     DWORD length = GetEnvironmentVariableW(utf16(name, w), found, PATH_SIZE);

@@ -54,14 +54,15 @@ static bool load(const Importer *importer, const State *state, const char *kind,
                  int32_t id, int64_t columns, Prepared *found) {
     char path[PATH_SIZE + 64], why[REASON_SIZE] = "there is no such file", help[REASON_SIZE];
     const char *given = text >= 0 ? state->texts[text] : "";
-    long long number = (long long)state->record[id].integer;
+    char name[64];
+    snprintf(name, sizeof name, "%s/%lld.prepared", kind, (long long)state->record[id].integer);
     snprintf(help, sizeof help, "a native FMU reads prepared files, see 'pldf %s --help'", kind);
-    if (!*given && !*importer->resources)
+    if (*given) snprintf(path, sizeof path, "%s", given);
+    else if (!importer_resource(importer, name, path, sizeof path))
         return importer_tell(importer, ERROR_LEVEL,
                              "no %s: the importer named no folder of resources, or one with a path of "
-                             "more than %d bytes", kind, PATH_SIZE - 1);
-    if (*given) snprintf(path, sizeof path, "%s", given);
-    else snprintf(path, sizeof path, "%s/%s/%lld.prepared", importer->resources, kind, number);
+                             "more than %d bytes, and there is none beside this library", kind,
+                             PATH_SIZE - 1);
     return (disk_read(path, "PLDF-PREPARED ", &found->bytes, &found->size, why) == READ_DONE &&
             prepared_parse(found, kind, columns, why)) ||
            importer_tell(importer, ERROR_LEVEL, "%s: %s; %s", path, why,
