@@ -181,21 +181,17 @@ class DriverInputs:
 class DriverOutputs:
     """What the driver does."""
 
-    driver_gas_pedal: float = real_output("Gas pedal travel", "", low=0.0, high=1.0, held=True)
-    driver_brake_pedal: float = real_output("Brake pedal travel", "", low=0.0, high=1.0, held=True)
-    lever_resume: int = flag_output("Lever: activate or resume", held=True)
-    lever_cancel: int = flag_output("Lever: cancel", held=True)
-    lever_up: int = flag_output("Lever: set speed up, short tip", held=True)
-    lever_down: int = flag_output("Lever: set speed down, short tip", held=True)
-    lever_up_long: int = flag_output("Lever: set speed up, long tip", held=True)
-    lever_down_long: int = flag_output("Lever: set speed down, long tip", held=True)
-    teach_pause: int = since("0.3", flag_output("Nothing is to be learned while true", held=True))
-    teach_forget_here: int = since(
-        "0.3", flag_output("Forget what was learned here (rising edge)", held=True)
-    )
-    teach_undo: int = since(
-        "0.3", flag_output("Take the newest lesson back (rising edge)", held=True)
-    )
+    driver_gas_pedal: float = real_output("Gas pedal travel", "", low=0.0, high=1.0)
+    driver_brake_pedal: float = real_output("Brake pedal travel", "", low=0.0, high=1.0)
+    lever_resume: int = flag_output("Lever: activate or resume")
+    lever_cancel: int = flag_output("Lever: cancel")
+    lever_up: int = flag_output("Lever: set speed up, short tip")
+    lever_down: int = flag_output("Lever: set speed down, short tip")
+    lever_up_long: int = flag_output("Lever: set speed up, long tip")
+    lever_down_long: int = flag_output("Lever: set speed down, long tip")
+    teach_pause: int = since("0.3", flag_output("Nothing is to be learned while true"))
+    teach_forget_here: int = since("0.3", flag_output("Forget what was learned here (rising edge)"))
+    teach_undo: int = since("0.3", flag_output("Take the newest lesson back (rising edge)"))
 
 
 @dataclass

@@ -136,15 +136,11 @@ class LeadInputs:
 class LeadOutputs:
     """What a sensor of our car tells of the car ahead; all 0 where it sees none."""
 
-    lead_present: int = flag_output("The sensor sees a car ahead", held=True)
-    lead_gap_m: float = real_output(
-        "Gap to it, bumper to bumper; negative after a contact", "m", held=True
-    )
-    lead_speed_mps: float = real_output("Its speed", "m/s", low=0.0, held=True)
-    lead_acceleration_mps2: float = real_output("Its acceleration", "m/s2", held=True)
-    lead_cars: int = holds(
-        whole(0, CARS_MAX), count_output("How many cars have been ahead so far", held=True)
-    )
+    lead_present: int = flag_output("The sensor sees a car ahead")
+    lead_gap_m: float = real_output("Gap to it, bumper to bumper; negative after a contact", "m")
+    lead_speed_mps: float = real_output("Its speed", "m/s", low=0.0)
+    lead_acceleration_mps2: float = real_output("Its acceleration", "m/s2")
+    lead_cars: int = holds(whole(0, CARS_MAX), count_output("How many cars have been ahead so far"))
 
 
 @dataclass

@@ -40,6 +40,7 @@ def vehicle_start(st: VehicleState, grade: Floats) -> None:
         st.drive_force_n = min(st.load_n, st.drive_limit_n)
     elif st.speed_mps > 0.0:
         st.brake_force_n = -st.load_n
+    _accelerate(st, st.speed_mps > 0.0)
     vehicle_refresh(st, grade)
 
 
@@ -53,14 +54,16 @@ def vehicle_step(st: VehicleState, grade: Floats, step_s: float) -> None:
     for _ in range(count):
         _advance(st, inner_s)
         _feel_road(st, grade)
-    _update_motion(st)
+    moves = st.speed_mps > 0.0 or _leaves_standstill(st)
+    _accelerate(st, moves)
+    _update_jerk(st, moves)
 
 
 def vehicle_refresh(st: VehicleState, grade: Floats) -> None:
-    """Recompute acceleration and jerk from state and inputs."""
+    """Recompute the jerk from state and inputs; for the acceleration the actuators need a step."""
     read_inputs(st)
     _feel_road(st, grade)
-    _update_motion(st)
+    _update_jerk(st, st.speed_mps > 0.0 or _leaves_standstill(st))
 
 
 def read_inputs(st: VehicleState) -> None:
@@ -82,12 +85,15 @@ def _feel_road(st: VehicleState, grade: Floats) -> None:
     st.drive_limit_n = drive_force_max_n(st)
 
 
-def _update_motion(st: VehicleState) -> None:
-    if st.speed_mps <= 0.0 and not _leaves_standstill(st):
-        st.acceleration_mps2 = 0.0
+def _accelerate(st: VehicleState, moves: bool) -> None:
+    force_n = st.drive_force_n - st.brake_force_n - st.load_n
+    st.acceleration_mps2 = force_n * st.mps2_per_n if moves else 0.0
+
+
+def _update_jerk(st: VehicleState, moves: bool) -> None:
+    if not moves:
         st.jerk_mps3 = 0.0
         return
-    st.acceleration_mps2 = (st.drive_force_n - st.brake_force_n - st.load_n) * st.mps2_per_n
     drive_rate = (drive_demand_n(st) - st.drive_force_n) * st.drive_rate_per_s
     brake_rate = (brake_demand_n(st) - st.brake_force_n) * st.brake_rate_per_s
     drag_rate = 2.0 * drag_n_per_v2(st) * st.speed_mps * st.acceleration_mps2

@@ -101,14 +101,20 @@ class VehicleInputs:
     function_active: int = flag_input("The request shall be followed", start=False)
 
 
+# An actuator answers them with a lag: force and acceleration follow the steps alone.
+DEMANDS = (
+    "acceleration_request_mps2", "driver_gas_pedal", "driver_brake_pedal", "function_active",
+)  # fmt: skip
+
+
 @dataclass
 class VehicleOutputs:
     """How the car moves."""
 
-    s_m: float = real_output("Position along the route", "m", held=True)
-    speed_mps: float = real_output("Ego speed", "m/s", low=0.0, held=True)
+    s_m: float = real_output("Position along the route", "m")
+    speed_mps: float = real_output("Ego speed", "m/s", low=0.0)
     acceleration_mps2: float = real_output("Ego acceleration", "m/s2")
-    jerk_mps3: float = real_output("Change of the acceleration per second", "m/s3")
+    jerk_mps3: float = real_output("Change of the acceleration per second", "m/s3", follows=DEMANDS)
 
 
 @dataclass

@@ -17,6 +17,7 @@ from ..fmi.description import (
     add_units,
     attributes,
     check,
+    dependencies,
     enumerations,
     header,
     type_attributes,
@@ -93,11 +94,7 @@ def _time(reference: int) -> Element:
 
 
 def _unknowns(signals: tuple[Signal, ...]) -> Iterable[Element]:
-    """Yield all outputs, twice; one that is held depends on nothing, or on the parameters."""
-    known = by_reference(signals)
-    parameters = [str(i) for i, s in known.items() if s.causality == "parameter"]
-    for name, dependencies in (("Output", ""), ("InitialUnknown", " ".join(parameters))):
-        for reference, signal in known.items():
-            if signal.causality == "output":
-                held = {"dependencies": dependencies} if signal.held else {}
-                yield Element(name, {"valueReference": str(reference), **held})
+    """Yield all outputs, twice: what they depend on between steps, and in initialization mode."""
+    for name, initial in (("Output", False), ("InitialUnknown", True)):
+        for reference, given in dependencies(by_reference(signals), initial):
+            yield Element(name, {"valueReference": str(reference), "dependencies": given})

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping, Set
+from collections.abc import Iterable, Mapping, Set
 from datetime import UTC, datetime
 from typing import Final, NamedTuple
 from xml.etree.ElementTree import Element, SubElement
@@ -191,29 +191,46 @@ def literal(signal: Signal, value: float | str) -> str:
 
 
 def _structure(root: Element, signals: tuple[Signal, ...]) -> None:
-    outputs = [(i, s) for i, s in enumerate(signals, start=1) if s.causality == "output"]
-    parameters = [str(i) for i, s in enumerate(signals, start=1) if s.causality == "parameter"]
+    indices = {i: signal for i, signal in enumerate(signals, start=1)}
     structure = SubElement(root, "ModelStructure")
-    # What an output that is held depends on; no list means everything.
-    known = {"Outputs": "", "InitialUnknowns": " ".join(parameters)}
-    # An empty list of unknowns is not allowed by the schema, an absent one is.
-    for name, dependencies in known.items() if outputs else ():
-        unknowns = SubElement(structure, name)
-        for index, signal in outputs:
-            held = {"dependencies": dependencies} if signal.held else {}
-            SubElement(unknowns, "Unknown", {"index": str(index), **held})
+    for name, initial in (("Outputs", False), ("InitialUnknowns", True)):
+        known = list(dependencies(indices, initial))
+        if known:  # an empty list of unknowns is not allowed by the schema, an absent one is
+            unknowns = SubElement(structure, name)
+            for index, given in known:
+                SubElement(unknowns, "Unknown", {"index": str(index), "dependencies": given})
+
+
+def dependencies(numbered: Mapping[int, Signal], initial: bool) -> Iterable[tuple[int, str]]:
+    """Yield each output with the numbers of what it depends on, as the model structure wants them.
+
+    Args:
+        numbered: the variables by what stands for them: index or value reference.
+        initial: in initialization mode, where any parameter may count; else between steps.
+    """
+    for number, output in numbered.items():
+        if output.causality == "output":
+            given = (
+                str(other)
+                for other, signal in numbered.items()
+                if signal.field in output.follows or (initial and signal.causality == "parameter")
+            )
+            yield number, " ".join(given)
 
 
 def check(signals: tuple[Signal, ...]) -> None:
     """Raise ValueError if a signal breaks a rule of FMI."""
     types: dict[str, Enumeration] = {}
     names: set[str] = set()
+    inputs = {signal.field for signal in signals if signal.causality == "input"}
     for signal in signals:
         if not _NAME.fullmatch(signal.name) or len(signal.name) > _NAME_MAX:
             raise ValueError(f"{signal.name!r} is not a structured name of at most {_NAME_MAX}")
         if signal.name in names:
             raise ValueError(f"variable name {signal.name!r} is used twice")
         names.add(signal.name)
+        if not inputs.issuperset(signal.follows):
+            raise ValueError(f"{signal.name} follows {signal.follows}, not all of them are inputs")
         kind = signal.enumeration
         if kind is not None and types.setdefault(kind.name, kind) != kind:
             raise ValueError(f"two different enumerations are named {kind.name!r}")

@@ -24,7 +24,7 @@ from .lever import (
     temporary_limit,
     update_set_speed,
 )
-from .localization import locate
+from .localization import expected_place, locate
 from .log import log_nodes, note_for_log
 from .modes import (
     BRAKE_PRESS,
@@ -62,10 +62,7 @@ def drive_step(
     """Advance by one communication step of ``step_s`` > 0 seconds with constant inputs."""
     check_inputs(st)
     if st.input_state != INPUT_INVALID:
-        locate(st, route)
-        st.sampled_s_m = st.vehicle_s_m
-        st.sampled_x_m = st.vehicle_x_m
-        st.sampled_y_m = st.vehicle_y_m
+        locate(st, route, expected_place(st))
         notice_temporary_limit(st, route)
         record_sample(st, route, trace)
         log_nodes(st, profile, trace)
@@ -73,6 +70,9 @@ def drive_step(
         hear_driver(st, route, profile, trace)
     else:  # no sample either: what is not known is neither recorded nor a place
         st.mode = next_mode(st.mode, FAIL)
+    st.sampled_s_m = st.vehicle_s_m
+    st.sampled_x_m = st.vehicle_x_m
+    st.sampled_y_m = st.vehicle_y_m
     look_ahead(st, route, profile, step_s)
     update_request(st, route, profile, step_s)
     st.time_ns += int(1e9 * step_s + 0.5)  # whole: a sum of float steps would drift
@@ -92,25 +92,25 @@ def refresh(st: PldfState, route: RouteArrays, profile: ProfileArrays) -> None:
 
     The outputs are a function of the memory that the last step left and of the present inputs. All
     memory stays as it is, so it does not matter whether and how often somebody reads an output.
+    What follows the position follows no other input, not even one that is no number.
     """
     s_m, ahead_m, localized = st.s_m, st.ahead_m, st.localized
-    input_state, valid_ns, invalid_ns = st.input_state, st.valid_ns, st.invalid_ns
-    check_inputs(st)
-    if st.input_state != INPUT_INVALID and is_placed_anew(st):
-        locate(st, route)
+    input_state, valid_ns = st.input_state, st.valid_ns
+    if is_position(st) and is_placed_anew(st):
+        locate(st, route, s_m + ahead_m)
         st.ahead_m = 0.0
     update_outputs(st, route, profile)
     st.s_m, st.ahead_m, st.localized = s_m, ahead_m, localized
-    st.input_state, st.valid_ns, st.invalid_ns = input_state, valid_ns, invalid_ns
+    st.input_state, st.valid_ns = input_state, valid_ns
 
 
 def is_placed_anew(st: PldfState) -> bool:
-    """Tell whether the position inputs are others than those of the last sample.
+    """Tell whether the position inputs are others than those of the last step.
 
     As long as they are not, they are a step old: the car is ``ahead_m`` behind them, whatever else
     was set since.
     """
-    if st.samples == 0:
+    if st.time_ns == 0:
         return True
     if st.localization == XY:
         return st.vehicle_x_m != st.sampled_x_m or st.vehicle_y_m != st.sampled_y_m
@@ -123,11 +123,7 @@ def check_inputs(st: PldfState) -> None:
     good = good and -ACCELERATION_BOUND < st.vehicle_acceleration_mps2 < ACCELERATION_BOUND
     good = good and -PEDAL_BOUND < st.driver_gas_pedal < PEDAL_BOUND
     good = good and -PEDAL_BOUND < st.driver_brake_pedal < PEDAL_BOUND
-    if st.localization == XY:
-        good = good and -POSITION_BOUND < st.vehicle_x_m < POSITION_BOUND
-        good = good and -POSITION_BOUND < st.vehicle_y_m < POSITION_BOUND
-    else:
-        good = good and -POSITION_BOUND < st.vehicle_s_m < POSITION_BOUND
+    good = good and is_position(st)
     if st.lead_present != 0:
         good = good and -POSITION_BOUND < st.lead_gap_m < POSITION_BOUND
         good = good and -SPEED_BOUND < st.lead_speed_mps < SPEED_BOUND
@@ -136,6 +132,14 @@ def check_inputs(st: PldfState) -> None:
     if not good:
         st.input_state = INPUT_INVALID
         st.invalid_ns = st.time_ns
+
+
+def is_position(st: PldfState) -> bool:
+    """Tell whether the position inputs in use are numbers that can be a place."""
+    if st.localization != XY:
+        return -POSITION_BOUND < st.vehicle_s_m < POSITION_BOUND
+    east = -POSITION_BOUND < st.vehicle_x_m < POSITION_BOUND
+    return east and -POSITION_BOUND < st.vehicle_y_m < POSITION_BOUND
 
 
 def update_mode_and_set_speed(st: PldfState, route: RouteArrays, profile: ProfileArrays) -> None:

@@ -25,15 +25,23 @@ BEYOND_M = 1.0
 FAR = 1e300  # beyond all squares of distances
 
 
-def locate(st: PldfState, route: RouteArrays) -> None:
-    """Set ``st.s_m`` and ``st.input_state`` from the position inputs."""
-    missing_s = 1e-9 * (st.time_ns - st.valid_ns)
-    expected = st.s_m + max(st.vehicle_speed_mps, 0.0) * missing_s
+def expected_place(st: PldfState) -> float:
+    """Return where the car is by now (m) if it went on from its last place at the present speed."""
+    return st.s_m + max(st.vehicle_speed_mps, 0.0) * missing_s(st)
+
+
+def missing_s(st: PldfState) -> float:
+    """Return for how long the place has not been known (s)."""
+    return 1e-9 * (st.time_ns - st.valid_ns)
+
+
+def locate(st: PldfState, route: RouteArrays, expected: float) -> None:
+    """Set ``st.s_m`` and ``st.input_state`` from the position inputs and the expected place (m)."""
     distance = 0.0
     s_m = st.vehicle_s_m
     if st.localization == XY:
         if st.localized != 0:
-            reach = SEARCH_MARGIN_M + SEARCH_GROWTH_MPS * missing_s
+            reach = SEARCH_MARGIN_M + SEARCH_GROWTH_MPS * missing_s(st)
             s_m, distance = project(route, st, (expected, reach), SAME_DISTANCE_M)
         else:
             s_m, distance = first_place(route, st)

@@ -58,8 +58,9 @@ class Enumeration:
 class Signal:
     """One variable of a model. ``field`` is the Python attribute, ``name`` the public name.
 
-    ``held``: an output that initialization and steps set, and that does not follow the inputs in
-    between. Masters that sort by such dependencies find no algebraic loop in the coupled models.
+    ``follows``: fields of the inputs that an output follows between the steps and in initialization
+    mode; empty for an output that only initialization and steps set. Masters sort by it, and what
+    is named too much makes algebraic loops that are not there.
     ``tunable``: a parameter that may be set between steps, too.
     ``since``: the release that brought it; empty: 0.2 had it.
     """
@@ -74,7 +75,7 @@ class Signal:
     low: float | None = None
     high: float | None = None
     enumeration: Enumeration | None = None
-    held: bool = False
+    follows: tuple[str, ...] = ()
     tunable: bool = False
     since: str = ""
 
@@ -166,10 +167,11 @@ def real_output(
     *,
     low: float | None = None,
     high: float | None = None,
-    held: bool = False,
+    follows: tuple[str, ...] = (),
 ) -> Any:
     """Real output."""
-    return _spec("output", "Real", 0.0, description, unit=unit, low=low, high=high, held=held)
+    details = {"unit": unit, "low": low, "high": high, "follows": follows}
+    return _spec("output", "Real", 0.0, description, **details)
 
 
 def flag_parameter(description: str, *, start: bool, name: str = "") -> Any:
@@ -182,9 +184,9 @@ def flag_input(description: str, *, start: bool, name: str = "") -> Any:
     return _spec("input", "Boolean", int(start), description, name=name)
 
 
-def flag_output(description: str, *, held: bool = False) -> Any:
+def flag_output(description: str, *, follows: tuple[str, ...] = ()) -> Any:
     """Boolean output, held as int 0 or 1."""
-    return _spec("output", "Boolean", 0, description, held=held)
+    return _spec("output", "Boolean", 0, description, follows=follows)
 
 
 def count_parameter(description: str, *, start: int, low: int, high: int, name: str = "") -> Any:
@@ -197,9 +199,9 @@ def count_input(description: str, *, start: int, low: int, high: int, name: str 
     return _spec("input", "Integer", start, description, low=low, high=high, name=name)
 
 
-def count_output(description: str, *, held: bool = False) -> Any:
+def count_output(description: str, *, follows: tuple[str, ...] = ()) -> Any:
     """Integer output."""
-    return _spec("output", "Integer", 0, description, held=held)
+    return _spec("output", "Integer", 0, description, follows=follows)
 
 
 def choice_parameter(description: str, choices: Enumeration, *, start: int, name: str = "") -> Any:
@@ -212,9 +214,9 @@ def choice_input(description: str, choices: Enumeration, *, start: int, name: st
     return _spec("input", "Enumeration", start, description, enumeration=choices, name=name)
 
 
-def choice_output(description: str, choices: Enumeration, *, held: bool = False) -> Any:
+def choice_output(description: str, choices: Enumeration, *, follows: tuple[str, ...] = ()) -> Any:
     """Enumeration output; the field holds the item's code."""
-    return _spec("output", "Enumeration", 0, description, enumeration=choices, held=held)
+    return _spec("output", "Enumeration", 0, description, enumeration=choices, follows=follows)
 
 
 def text_parameter(description: str, *, name: str = "") -> Any:
@@ -232,7 +234,7 @@ def tunable(specifier: Any) -> Any:
 
 def text_output(description: str) -> Any:
     """String output, put together when it is read; the kernel holds what it is made of."""
-    return _spec("output", "String", "", description, held=True)
+    return _spec("output", "String", "", description)
 
 
 def parameters_of(texts: type[Any] | Any) -> tuple[str, ...]:

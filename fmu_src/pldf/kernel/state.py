@@ -96,68 +96,84 @@ class Inputs:
     )  # fmt: skip
 
 
+# Which of them counts says the parameter ``localization``.
+POSITION = ("vehicle_s_m", "vehicle_x_m", "vehicle_y_m")
+LIMITED = (*POSITION, "limit_override_mps")
+
+
 @dataclass
 class Outputs:
     """What the function tells vehicle, driver and researcher."""
 
     acceleration_request_mps2: float = real_output(
-        "Requested acceleration", "m/s2", low=-10.0, high=5.0, held=True
+        "Requested acceleration", "m/s2", low=-10.0, high=5.0
     )
     function_active: int = flag_output(
-        "The vehicle shall follow the request (ACTIVE, GAS_OVERRIDE)", held=True
+        "The vehicle shall follow the request (ACTIVE, GAS_OVERRIDE)"
     )
     # Numbers, not an enumeration: libcosim drops enumerations, and the driver needs the mode.
-    mode: int = holds(code(MODE), count_output(f"Mode of the function: {MODE.legend}", held=True))
-    target_speed_mps: float = real_output("Speed the function aims at here", "m/s")
-    base_speed_mps: float = real_output("Base profile here", "m/s")
-    set_speed_mps: float = real_output("Set speed in force", "m/s")
+    mode: int = holds(code(MODE), count_output(f"Mode of the function: {MODE.legend}"))
+    target_speed_mps: float = real_output("Speed the function aims at here", "m/s", follows=LIMITED)
+    base_speed_mps: float = real_output("Base profile here", "m/s", follows=POSITION)
+    set_speed_mps: float = real_output("Set speed in force", "m/s", follows=LIMITED)
     set_speed_offset_mps: float = real_output(
-        "Offset that the driver set in this drive, 0 = none", "m/s"
+        "Offset that the driver set in this drive, 0 = none", "m/s", follows=LIMITED
     )
-    limit_mps: float = real_output("Legal limit here", "m/s")
-    rate_pedal: float = real_output("Share of this drive with a pedal intervention", "", held=True)
-    rate_set_speed: float = real_output(
-        "Share of this drive with a set-speed offset", "", held=True
-    )
-    rate_combined: float = real_output("Share of this drive with either", "", held=True)
+    limit_mps: float = real_output("Legal limit here", "m/s", follows=LIMITED)
+    rate_pedal: float = real_output("Share of this drive with a pedal intervention", "")
+    rate_set_speed: float = real_output("Share of this drive with a set-speed offset", "")
+    rate_combined: float = real_output("Share of this drive with either", "")
     drive_interventions: int = holds(
         whole(0, COUNT_MAX, at_most=NODES),
-        count_output("Pedal interventions in this drive", held=True),
+        count_output("Pedal interventions in this drive"),
     )
     profile_iteration: int = holds(
-        whole(0, COUNT_MAX), count_output("Number of drives learned so far", held=True)
+        whole(0, COUNT_MAX), count_output("Number of drives learned so far")
     )
-    profile_status: int = choice_output(
-        "What became of the stored profile", PROFILE_STATUS, held=True
+    profile_status: int = choice_output("What became of the stored profile", PROFILE_STATUS)
+    hmi_reason: int = choice_output("Why the car drives at this speed", REASON)
+    hmi_learned_delta_mps: float = real_output(
+        "Learned minus base speed here", "m/s", follows=POSITION
     )
-    hmi_reason: int = choice_output("Why the car drives at this speed", REASON, held=True)
-    hmi_learned_delta_mps: float = real_output("Learned minus base speed here", "m/s")
-    hmi_next_speed_mps: float = real_output("Next speed that the profile settles at", "m/s")
-    hmi_next_distance_m: float = real_output("Distance to that speed", "m")
-    hmi_learning: int = flag_output("This drive is being learned from")
+    hmi_next_speed_mps: float = real_output(
+        "Next speed that the profile settles at", "m/s", follows=POSITION
+    )
+    hmi_next_distance_m: float = real_output("Distance to that speed", "m", follows=POSITION)
+    hmi_learning: int = flag_output(
+        "This drive is being learned from", follows=("eligible", "teach_pause")
+    )
     hmi_reason_code: int = since(
         "0.3",
-        holds(code(REASON), count_output(f"hmi.reason as a number: {REASON.legend}", held=True)),
+        holds(code(REASON), count_output(f"hmi.reason as a number: {REASON.legend}")),
     )
     profile_status_code: int = since(
         "0.3",
         holds(
             code(PROFILE_STATUS),
-            count_output(f"profile.status as a number: {PROFILE_STATUS.legend}", held=True),
+            count_output(f"profile.status as a number: {PROFILE_STATUS.legend}"),
         ),
     )
     hmi_learned_in_drives: int = since(
-        "0.3", holds(whole(0, COUNT_MAX), count_output("How many drives shaped this place"))
+        "0.3",
+        holds(
+            whole(0, COUNT_MAX), count_output("How many drives shaped this place", follows=POSITION)
+        ),
     )
     hmi_confidence: float = since(
         "0.3",
-        real_output("How sure the function is of what it learned here", "", low=0.0, high=1.0),
+        real_output(
+            "How sure the function is of what it learned here",
+            "",
+            low=0.0,
+            high=1.0,
+            follows=POSITION,
+        ),
     )
     hmi_event: int = since(
         "0.3",
         holds(
             code(EVENT),
-            count_output(f"What just happened, for a second: {EVENT.legend}", held=True),
+            count_output(f"What just happened, for a second: {EVENT.legend}"),
         ),
     )
     hmi_sentence: int = since(
@@ -167,36 +183,33 @@ class Outputs:
             count_output(
                 "Which sentence hmi.text says: the code of a reason, or "
                 f"{EVENT_SENTENCES} + the code of an event",
-                held=True,
             ),
         ),
     )
     hmi_sentence_speed: int = since(
         "0.3",
-        holds(whole(0, COUNT_MAX), count_output("Speed that it names, in hmi.unit", held=True)),
+        holds(whole(0, COUNT_MAX), count_output("Speed that it names, in hmi.unit")),
     )
     hmi_sentence_base: int = since(
         "0.3",
-        holds(
-            whole(0, COUNT_MAX), count_output("Base speed that it names, in hmi.unit", held=True)
-        ),
+        holds(whole(0, COUNT_MAX), count_output("Base speed that it names, in hmi.unit")),
     )
     hmi_sentence_limit: int = since(
         "0.3",
-        holds(whole(0, COUNT_MAX), count_output("Limit that it names, in hmi.unit", held=True)),
+        holds(whole(0, COUNT_MAX), count_output("Limit that it names, in hmi.unit")),
     )
     hmi_sentence_drive: int = since(
-        "0.3", holds(whole(0, COUNT_MAX), count_output("Drive that it names", held=True))
+        "0.3", holds(whole(0, COUNT_MAX), count_output("Drive that it names"))
     )
     hmi_take_over: int = since(
-        "0.3", flag_output("The driver has to brake: following alone may not do", held=True)
+        "0.3", flag_output("The driver has to brake: following alone may not do")
     )
     following_limits: int = since(
-        "0.3", flag_output("The car ahead, not the profile, sets the speed", held=True)
+        "0.3", flag_output("The car ahead, not the profile, sets the speed")
     )
     following_time_gap_s: float = since(
         "0.3",
-        real_output("Time gap to the car ahead, 0 = none", "s", low=0.0, high=1e3, held=True),
+        real_output("Time gap to the car ahead, 0 = none", "s", low=0.0, high=1e3),
     )
 
 
@@ -207,7 +220,7 @@ class Memory:
     time_ns: int = nanoseconds()
     s_m: float = 0.0
     ahead_m: float = 0.0  # travel from the last sample to the end of the step
-    sampled_s_m: float = anything()  # the position inputs of the last sample
+    sampled_s_m: float = anything()  # the position inputs of the last step
     sampled_x_m: float = anything()
     sampled_y_m: float = anything()
     localized: int = flag()

@@ -42,10 +42,12 @@ class CartRecord:
     brake: int = flag_input("Brake", start=False)
     position_m: float = real_output("Position", "m")
     speed_mps: float = real_output("Speed", SPEED_UNIT)
-    acceleration_mps2: float = real_output("Acceleration, follows the force at once", "m/s2")
+    acceleration_mps2: float = real_output(
+        "Acceleration, follows the force at once", "m/s2", follows=("force_n", "gear", "brake")
+    )
     steps: int = holds(whole(0, 2**60), count_output("Steps since the start"))
     moving: int = flag_output("The cart moves")
-    engaged: int = choice_output("Gear in use", GEAR)
+    engaged: int = choice_output("Gear in use", GEAR, follows=("gear",))
     hidden_m: float = 0.0
 
 
