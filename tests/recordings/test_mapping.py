@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pldf import cli
 from pldf.errors import ModelError
-from pldf.kernel.codes import MODE
+from pldf.kernel.codes import MODE, REASON
 from pldf.recordings.mapping import RecordingMap, Source, read_map, ready_maps
 from pldf.recordings.recording import Recording, read_recording, write_recording
 from pldf.recordings.suggest import suggest_map
@@ -294,7 +294,7 @@ def test_every_ready_map_can_be_read_and_named() -> None:
     assert list(ready_maps()) == ["ecos", "fmpy", "libcosim", "omsimulator"]
     for name, ready in ready_maps().items():
         assert read_map(name) is ready and ready.name == name
-        assert set(ready.columns) == set(sample_recording().columns)
+        assert set(ready.columns) == {*sample_recording().columns, "hmi_reason"}
 
 
 def in_names_of(master: str) -> list[tuple[str, dict[str, str]]]:
@@ -303,7 +303,7 @@ def in_names_of(master: str) -> list[tuple[str, dict[str, str]]]:
     variables = {
         "s_m": "vehicle.s_m", "speed_mps": "vehicle.speed_mps", "mode": "mode",
         "base_mps": "base_speed_mps", "delta": "hmi.learned_delta_mps",
-        "set_speed_offset_mps": "set_speed_offset_mps",
+        "set_speed_offset_mps": "set_speed_offset_mps", "hmi_reason": "hmi.reason_code",
     }  # fmt: skip
     alone = {"time_s": "Time" if master == "libcosim" else "time", **variables}
     names = {ours: prefix.format(name) for ours, name in variables.items()}
@@ -320,9 +320,11 @@ def in_names_of(master: str) -> list[tuple[str, dict[str, str]]]:
 def test_a_ready_map_reads_what_its_master_writes(tmp_path: Path, master: str, named: bool) -> None:
     made = sample_recording().columns
     made["delta"] = made["profile_mps"] - made["base_mps"]
+    made["hmi_reason"] = np.arange(float(len(made["mode"]))) % len(REASON.items)
     for _, names in in_names_of(master):
         cells = [[repr(v) for v in made[ours].tolist()] for ours in names]
-        cells[list(names).index("mode")] = [str(int(v)) for v in made["mode"]]
+        for code in ("mode", "hmi_reason"):
+            cells[list(names).index(code)] = [str(int(v)) for v in made[code]]
         header = ",".join(f'"{name}"' for name in (*names.values(), "driver.vehicle.s_m"))
         rows = "\n".join(",".join((*row, "9")) for row in zip(*cells, strict=True))
         (tmp_path / "r.csv").write_text(f"{header}\n{rows}\n")
