@@ -14,7 +14,6 @@ from .codes import (
     ACTIVE,
     FAULT,
     GAS_OVERRIDE,
-    LEARN_CONSISTENT,
     OFF,
     REASON_CAP_CURVE,
     REASON_CAP_LEGAL,
@@ -40,6 +39,7 @@ from .interpolation import Place, place_at, value_of
 from .lever import temporary_limit
 from .ranges import EVIDENCE_MAX
 from .reasons import AT_SET_MPS, CURVE_SHARE
+from .recorder import learns_consistent
 from .speech import update_sentence
 from .state import PldfState
 from .units import MPS_PER_KMH
@@ -198,7 +198,7 @@ def confidence_at(st: PldfState, profile: ProfileArrays, place: Place) -> float:
     after ``n`` lessons, of which each halves the deviation.
     """
     i = place[0]
-    if st.learn == LEARN_CONSISTENT or st.learn_consistent != 0:
+    if learns_consistent(st):
         pedals = max(profile.evidence_faster[i], profile.evidence_slower[i])
         lever = max(profile.offset_evidence_faster[i], profile.offset_evidence_slower[i])
         return max(pedals, lever) / EVIDENCE_MAX

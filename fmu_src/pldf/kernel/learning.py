@@ -20,6 +20,7 @@ from .pieces import insert_pieces
 from .preparation import plan
 from .recorder import learns_consistent
 from .segments import average, find_segments, learn_segments
+from .speech import say_learned
 from .state import PldfState
 
 SAME_PLAN_MPS = 1e-9  # plans nearer than this are the same plan, rounded differently
@@ -59,6 +60,7 @@ def learn_drive(
     tell_outcomes(st, route, profile, trace, following)
     if learns_consistent(st):
         find_places(st, profile, following)
+    say_learned(st, following)
 
 
 def _weigh(st: PldfState, lever: Drive, work: Work) -> None:

@@ -6,13 +6,15 @@ has had its second; a warning does not.
 
 from __future__ import annotations
 
-from .arrays import ProfileArrays, RouteArrays
+from .arrays import NextArrays, ProfileArrays, RouteArrays
 from .codes import (
+    EVENT_LEARNED,
     EVENT_NEW_LIMIT,
     EVENT_NONE,
     EVENT_PAUSED,
     EVENT_RESUMED,
     EVENT_TAKE_OVER,
+    OUTCOME_LEARNED,
     REASON_CAP_LEGAL,
     REASON_COASTING_TO_LIMIT,
     REASON_LEARNED_FASTER,
@@ -25,7 +27,7 @@ from .codes import (
     REASON_TEMPORARY_LIMIT,
     UNIT_MPH,
 )
-from .hmi import HOLD_NS
+from .hmi import HOLD_NS, start_event
 from .interpolation import Place
 from .lever import automatic_set_speed
 from .sentences import EVENT_SENTENCES
@@ -55,6 +57,19 @@ def update_sentence(
         st.event_untold = EVENT_NONE
     else:
         _say(st, st.hmi_reason, numbers)
+
+
+def say_learned(st: PldfState, following: NextArrays) -> None:
+    """Say behind a drive that something was learned from it, if so."""
+    learned = False
+    for k in range(st.drive_interventions):
+        learned = learned or following.outcome[k] == OUTCOME_LEARNED
+    for k in range(st.set_series):
+        learned = learned or following.set_outcome[k] == OUTCOME_LEARNED
+    if learned:
+        start_event(st, EVENT_LEARNED)
+        st.event_untold = EVENT_NONE
+        _say(st, EVENT_SENTENCES + EVENT_LEARNED, (0, 0, 0, 0))
 
 
 def _is_event_true(st: PldfState, told: int) -> bool:
