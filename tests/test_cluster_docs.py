@@ -8,7 +8,10 @@ import pytest
 from pldf.kernel.sentences import EVENTS, REASONS, Sentence
 
 PAGE = Path(__file__).parents[1] / "docs" / "cluster.md"
-HEAD = "| code | name | priority | icon | English | German | said when |\n|---|---|---|---|---|---|---|\n"
+HEAD = (
+    "| code | name | priority | icon | English | German | said when |\n"
+    "|---|---|---|---|---|---|---|\n"
+)
 
 
 def table(rows: tuple[Sentence, ...]) -> str:
