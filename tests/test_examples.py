@@ -144,6 +144,23 @@ def test_a_simulator_recording(tmp_path: Path) -> None:
     np.testing.assert_allclose(theirs, ours, atol=1e-9)
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="SUMO is locked for Linux only")
+def test_traffic_in_sumo(tmp_path: Path, native_folder: Path) -> None:
+    said = run(tmp_path, "06_traffic_in_sumo.py", native_folder, "40")
+    rows = re.findall(r"^ +\d+ s +(\d+) m +([\d.]+) km/h", said, re.MULTILINE)
+    places = [float(place) for place, _ in rows]
+    assert len(rows) == 4 and places == sorted(places) and places[-1] > 300.0
+    (share, gap_m, time_gap_s) = map(
+        float,
+        re.search(
+            r"in (\d+) % .*\nsmallest gap ([\d.-]+) m, smallest time gap ([\d.-]+) s", said
+        ).groups(),  # type: ignore[union-attr]
+    )
+    assert share > 10.0
+    assert gap_m > 3.0
+    assert time_gap_s > 1.0
+
+
 def test_the_map_in_the_docs_is_the_one_of_the_example(tmp_path: Path) -> None:
     run(tmp_path, "05_a_simulator_recording.py")
     page = (EXAMPLES.parent / "docs" / "recordings.md").read_text(encoding="utf-8")
