@@ -95,12 +95,49 @@ def test_packages_hold_the_fmus_and_the_sources(package: Path, series: Series) -
     assert members == {}
 
 
+def test_the_second_form_has_the_values_inline_and_says_the_same(
+    package: Path, series: Series
+) -> None:
+    with zipfile.ZipFile(package) as archive, zipfile.ZipFile(_inline(package)) as inline:
+        fmus = {name for name in archive.namelist() if name.endswith(".fmu")}
+        assert set(inline.namelist()) == {ssp.STRUCTURE, *fmus}
+        assert all(inline.read(name) == archive.read(name) for name in fmus)
+        root = etree.fromstring(inline.read(ssp.STRUCTURE))
+        for component in root.iterfind(".//ssd:Component", NS):
+            (binding,) = component.iterfind("ssd:ParameterBindings/ssd:ParameterBinding", NS)
+            assert dict(binding.attrib) == {}
+            (values,) = binding.iterfind("ssd:ParameterValues/ssv:ParameterSet", NS)
+            file = etree.fromstring(archive.read(f"resources/{component.get('name')}.ssv"))
+            assert _values(values) == _values(file) != {}
+            binding.getparent().remove(binding)
+        usual = etree.fromstring(archive.read(ssp.STRUCTURE))
+        for binding in list(usual.iterfind(".//ssd:ParameterBinding", NS)):
+            binding.getparent().remove(binding)
+        assert etree.tostring(root, method="c14n2", strip_text=True) == etree.tostring(
+            usual, method="c14n2", strip_text=True
+        )
+    assert [e.name for e in read_ssd(str(_inline(package))).system.elements] == list(series.parts)
+
+
+def _inline(package: Path) -> Path:
+    return package.parent / "inline" / package.name
+
+
+def _values(root: Any) -> dict[str, tuple[str, dict[str, str]]]:
+    """Return type and attributes of each value by name."""
+    return {
+        parameter.get("name"): (etree.QName(parameter[0]).localname, dict(parameter[0].attrib))
+        for parameter in root.iterfind("ssv:Parameters/ssv:Parameter", NS)
+    }
+
+
 def test_packages_are_the_same_bytes_on_each_build(folder: Path, tmp_path: Path) -> None:
     for fmu in PARTS_IN_TRAFFIC.values():
         (tmp_path / f"{fmu}.fmu").write_bytes((folder / f"{fmu}.fmu").read_bytes())
     with unpacked(tmp_path, PARTS_IN_TRAFFIC) as fmus:
         for path in write_packages(tmp_path, fmus):
-            assert path.read_bytes() == (folder / path.name).read_bytes()
+            place = path.relative_to(tmp_path)
+            assert path.read_bytes() == (folder / place).read_bytes()
 
 
 def test_connectors_are_as_in_the_fmus_and_all_inputs_are_fed_once(
@@ -148,6 +185,9 @@ def test_the_structure_is_flat_and_says_how_to_step(structure: Any, series: Seri
     (master,) = annotation.iterfind(".//{*}SimulationInformation/{*}FixedStepMaster")
     assert float(master.get("stepSize")) == 0.01
     experiment = structure.find("ssd:DefaultExperiment", NS)
+    path = "ssd:Annotations/ssc:Annotation[@type='org.openmodelica']//{*}SimulationInformation"
+    (results,) = experiment.iterfind(path, NS)  # without it OMSimulator warns
+    assert results.get("resultFile") == f"{structure.get('name')}.csv"
     long_enough = (211.0, 220.0) if series.traffic is None else (300.0, 400.0)
     assert long_enough[0] < float(experiment.get("stopTime")) <= long_enough[1]
     for gone in ("Enumerations", "SignalDictionaries", "SystemGeometry"):
@@ -223,10 +263,10 @@ def test_a_package_that_breaks_the_schema_is_not_left_behind(
     for fmu in PARTS_IN_TRAFFIC.values():
         (tmp_path / f"{fmu}.fmu").write_bytes((fmu_folder / f"{fmu}.fmu").read_bytes())
     good = ssp.structure
-    monkeypatch.setattr(ssp, "structure", lambda system: good(system).replace(b'kind="', b'sort="'))
+    monkeypatch.setattr(ssp, "structure", lambda *of: good(*of).replace(b'kind="', b'sort="'))
     with pytest.raises(ModelError, match=r"study_A1\.ssp is not a valid SSP package"):
         write_packages(tmp_path, traffic_fmus)
-    assert list(tmp_path.glob("*.ssp")) == []
+    assert list(tmp_path.rglob("*.ssp")) == []
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,6 @@ here: connections and values are those of the coupled drives.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import product
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -71,6 +70,9 @@ SERIES: Final = (
 )
 
 
+INLINE: Final = "inline"  # folder of the packages without ``.ssv``
+
+
 def sources(fmus: Mapping[str, Fmu]) -> dict[str, bytes]:
     """Return the readable content of all packages: structures and each phase's values.
 
@@ -87,28 +89,42 @@ def sources(fmus: Mapping[str, Fmu]) -> dict[str, bytes]:
         return {
             f"{series.folder}{name}": text
             for series in SERIES
-            for name, text in _texts(series, {part: fmus[part] for part in series.parts}).items()
+            for name, text in _texts(series, fmus).items()
         }
     except ValueError as problem:
         raise ModelError(f"SSP packages: {problem}") from None
 
 
-def _texts(series: Series, fmus: Mapping[str, Fmu]) -> dict[str, bytes]:
+def inline_structures(series: Series, fmus: Mapping[str, Fmu]) -> dict[str, bytes]:
+    """Return the structure by phase with the values in it, for importers that read no ``.ssv``."""
+    system = _system(series, fmus)
+    return {
+        name: ssp.structure(system, start_values(phase, drive, series.traffic))
+        for drive, (name, phase) in enumerate(PHASES.items())
+    }
+
+
+def _system(series: Series, fmus: Mapping[str, Fmu]) -> ssp.System:
+    known = {part: fmus[part] for part in series.parts}
     components = [
-        ssp.Component(part, f"{series.parts[part]}.fmu", fmu.signals) for part, fmu in fmus.items()
+        ssp.Component(part, f"{series.parts[part]}.fmu", fmu.signals) for part, fmu in known.items()
     ]
-    system = ssp.System(
+    return ssp.System(
         name=series.name,
         about=series.about,
         components=components,
-        connections=connections(fmus),
+        connections=connections(known),
         stop_time_s=series.stop_time_s,
         step_s=STEP_S,
     )
+
+
+def _texts(series: Series, fmus: Mapping[str, Fmu]) -> dict[str, bytes]:
+    system = _system(series, fmus)
     texts = {ssp.STRUCTURE: ssp.structure(system)}
     for drive, phase in enumerate(PHASES.values()):
         values = start_values(phase, drive, series.traffic)
-        for component in components:
+        for component in system.components:
             text = ssp.parameter_set(component.signals, values[component.name])
             texts[f"{phase.name}/{component.name}.ssv"] = text
     return texts
@@ -134,6 +150,8 @@ def start_values(
 def write_packages(folder: Path, fmus: Mapping[str, Fmu]) -> list[Path]:
     """Write ``study_PHASE.ssp`` and ``study_traffic_PHASE.ssp`` into ``folder``, to the FMUs.
 
+    In ``inline/`` they stand once more, with the values in the structure and without ``.ssv``.
+
     Raises:
         ModelError: from ``sources``, or a package is not valid.
     """
@@ -142,17 +160,27 @@ def write_packages(folder: Path, fmus: Mapping[str, Fmu]) -> list[Path]:
         f"{ssp.RESOURCES}/{name}.fmu": (folder / f"{name}.fmu").read_bytes()
         for name in PARTS_IN_TRAFFIC.values()
     }
+    (folder / INLINE).mkdir(exist_ok=True)
     written = []
-    for series, phase in product(SERIES, PHASES):
-        members = {ssp.STRUCTURE: texts[f"{series.folder}{ssp.STRUCTURE}"]}
-        for part, name in series.parts.items():
-            members[ssp.parameter_file(part)] = texts[f"{series.folder}{phase}/{part}.ssv"]
-            members[f"{ssp.RESOURCES}/{name}.fmu"] = archives[f"{ssp.RESOURCES}/{name}.fmu"]
-        path = folder / f"{series.name}_{phase}.ssp"
-        write_archive(path, members)
-        _require_valid(path)
-        written.append(path)
+    for series in SERIES:
+        inner = [f"{ssp.RESOURCES}/{name}.fmu" for name in series.parts.values()]
+        inside = {name: archives[name] for name in inner}
+        for phase, inline in inline_structures(series, fmus).items():
+            sets = {
+                ssp.parameter_file(part): texts[f"{series.folder}{phase}/{part}.ssv"]
+                for part in series.parts
+            }
+            usual = {ssp.STRUCTURE: texts[f"{series.folder}{ssp.STRUCTURE}"], **sets}
+            name = f"{series.name}_{phase}.ssp"
+            written.append(_written(folder / name, {**usual, **inside}))
+            written.append(_written(folder / INLINE / name, {ssp.STRUCTURE: inline, **inside}))
     return written
+
+
+def _written(path: Path, members: Mapping[str, bytes]) -> Path:
+    write_archive(path, members)
+    _require_valid(path)
+    return path
 
 
 def write_sources(folder: Path, fmus: Mapping[str, Fmu]) -> None:

@@ -4,7 +4,9 @@
 - An input that nothing feeds is no connector (importers wire it to something, or fail).
 - No enumerations: libcosim drops such variables and aborts where a package names one, ecos refuses
   to load it. No strings: fmpy's importer cannot set them.
-- The top system says how OMSimulator shall step; without that it does not simulate.
+- The top system says how OMSimulator shall step; without that it does not simulate. The default
+  experiment says where its results go; without that it warns of deprecated content.
+- Values stand in files (.ssv) or, for importers that know none (OpenMCx), in the structure itself.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ FMU_TYPE: Final = "application/x-fmu-sharedlibrary"
 _SSP: Final = "http://ssp-standard.org/SSP1/SystemStructure"
 _OMS: Final = "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd"
 
+Values = Mapping[str, float | str]
 # (component, variable) of an output and of the input that it feeds
 Connection = tuple[tuple[str, str], tuple[str, str]]
 
@@ -66,12 +69,21 @@ class System:
     step_s: float
 
 
-def structure(system: System) -> bytes:
-    """Return the system structure description; ValueError if a connection cannot be written."""
+def structure(system: System, inline: Mapping[str, Values] | None = None) -> bytes:
+    """Return the system structure description.
+
+    Args:
+        system: what it consists of.
+        inline: start values by component that shall stand in it, in place of files.
+
+    Raises:
+        ValueError: a connection or a value cannot be written.
+    """
     attributes = {
         "xmlns:ssd": f"{_SSP}Description",
         "xmlns:ssc": f"{_SSP}Common",
         "xmlns:oms": _OMS,
+        **({"xmlns:ssv": f"{_SSP}ParameterValues"} if inline is not None else {}),
         "version": "1.0",
         "name": system.name,
         "description": system.about,
@@ -85,7 +97,12 @@ def structure(system: System) -> bytes:
         for component in system.components
     }
     for component in system.components:
-        _component(elements, component, carried[component.name])
+        bound = _component(elements, component, carried[component.name])
+        if inline is None:
+            bound.set("source", parameter_file(component.name))
+        else:
+            values = SubElement(bound, "ssd:ParameterValues")
+            values.append(_parameter_set(component.signals, inline[component.name]))
     connections = SubElement(top, "ssd:Connections")
     for source, target in system.connections:
         ends = dict(zip(("startElement", "startConnector"), source, strict=True))
@@ -95,11 +112,13 @@ def structure(system: System) -> bytes:
     signals = [signal for found in carried.values() for signal in found]
     _units(root, "ssd:Units", signals)
     times = {"startTime": "0", "stopTime": f"{system.stop_time_s:g}"}
-    SubElement(root, "ssd:DefaultExperiment", times)
+    results = {"resultFile": f"{system.name}.csv", "loggingInterval": "0.0", "bufferSize": "1"}
+    experiment = SubElement(root, "ssd:DefaultExperiment", times)
+    _simulation_information(experiment, {**results, "signalFilter": ""})
     return _text(root)
 
 
-def parameter_set(signals: Mapping[str, Signal], values: Mapping[str, float | str]) -> bytes:
+def parameter_set(signals: Mapping[str, Signal], values: Values) -> bytes:
     """Return a parameter set (.ssv) with start values of one component.
 
     Args:
@@ -109,13 +128,14 @@ def parameter_set(signals: Mapping[str, Signal], values: Mapping[str, float | st
     Raises:
         ValueError: one of them is out of its range, or not every importer could set it.
     """
-    attributes = {
-        "xmlns:ssv": f"{_SSP}ParameterValues",
-        "xmlns:ssc": f"{_SSP}Common",
-        "version": "1.0",
-        "name": PARAMETER_SET,
-    }
-    root = Element("ssv:ParameterSet", attributes)
+    root = _parameter_set(signals, values)
+    names = {"xmlns:ssv": f"{_SSP}ParameterValues", "xmlns:ssc": f"{_SSP}Common"}
+    root.attrib = {**names, **root.attrib}
+    return _text(root)
+
+
+def _parameter_set(signals: Mapping[str, Signal], values: Values) -> Element:
+    root = Element("ssv:ParameterSet", {"version": "1.0", "name": PARAMETER_SET})
     parameters = SubElement(root, "ssv:Parameters")
     for name, value in values.items():
         signal = signals[name]
@@ -125,7 +145,7 @@ def parameter_set(signals: Mapping[str, Signal], values: Mapping[str, float | st
         unit = {"unit": signal.unit} if signal.unit else {}
         SubElement(parameter, f"ssv:{signal.kind}", {"value": literal(signal, value), **unit})
     _units(root, "ssv:Units", [signals[name] for name in values])
-    return _text(root)
+    return root
 
 
 def parameter_file(component: str) -> str:
@@ -162,7 +182,8 @@ def _require_allowed(signal: Signal, value: float | str) -> None:
         raise ValueError(f"{signal.name} is an output, it has no start value")
 
 
-def _component(elements: Element, component: Component, connectors: Iterable[Signal]) -> None:
+def _component(elements: Element, component: Component, connectors: Iterable[Signal]) -> Element:
+    """Add a component; return the binding of its start values, still empty."""
     attributes = {
         "name": component.name,
         "type": FMU_TYPE,
@@ -176,17 +197,23 @@ def _component(elements: Element, component: Component, connectors: Iterable[Sig
         unit = {"unit": signal.unit} if signal.unit else {}
         SubElement(SubElement(listed, "ssd:Connector", kind), f"ssc:{signal.kind}", unit)
     bindings = SubElement(element, "ssd:ParameterBindings")
-    SubElement(bindings, "ssd:ParameterBinding", {"source": parameter_file(component.name)})
+    return SubElement(bindings, "ssd:ParameterBinding")
 
 
 def _master(top: Element, step_s: float) -> None:
-    annotations = SubElement(top, "ssd:Annotations")
-    annotation = SubElement(annotations, "ssc:Annotation", {"type": "org.openmodelica"})
-    information = SubElement(SubElement(annotation, "oms:Annotations"), "oms:SimulationInformation")
+    information = _simulation_information(top, {})
     # oms-ma: all components step with the values of the last communication point.
     steps = {"description": "oms-ma", "stepSize": f"{step_s:g}"}
     tolerances = {"absoluteTolerance": "0.0001", "relativeTolerance": "0.0001"}
     SubElement(information, "oms:FixedStepMaster", {**steps, **tolerances})
+
+
+def _simulation_information(of: Element, attributes: Mapping[str, str]) -> Element:
+    """Add what OMSimulator reads of an element."""
+    annotations = SubElement(of, "ssd:Annotations")
+    annotation = SubElement(annotations, "ssc:Annotation", {"type": "org.openmodelica"})
+    known = SubElement(annotation, "oms:Annotations")
+    return SubElement(known, "oms:SimulationInformation", dict(attributes))
 
 
 def _units(root: Element, tag: str, signals: Iterable[Signal]) -> None:

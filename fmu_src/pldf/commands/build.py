@@ -68,7 +68,8 @@ def run(options: argparse.Namespace) -> None:
         folder = options.out / NATIVE_FOLDER if options.native else options.out
         written = fmus.build_packages(folder, made, options.ssp_sources)
         if written:
-            print(f"{folder}: {', '.join(path.name for path in written)} (valid)")
+            names = [path.relative_to(folder).as_posix() for path in written]
+            print(f"{folder}: {', '.join(names)} (valid)")
 
 
 def _build(label: str, name: str, options: argparse.Namespace) -> list[Path]:
