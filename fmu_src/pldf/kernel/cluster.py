@@ -52,6 +52,8 @@ NEAR_MPS = 0.3
 STILL_MPS2 = 0.1
 # Twice as far is what makes a reason false that holds for its second.
 FALSE_SHARE = 2.0
+# A lesson whose numbers have changed by no more than this may go on being told for its second.
+AT_NUMBERS_MPS = 0.4
 # A reason (REASON in codes), the speed that its sentence names and that without lessons, m/s.
 Reason = tuple[int, float, float]
 
@@ -175,17 +177,34 @@ def _does_so(st: PldfState, asked: Reason) -> bool:
 def _is_still_true(st: PldfState, asked: int) -> bool:
     """Tell whether the reason shown is not contradicted by what is ``asked`` for and done now."""
     shown = st.hmi_reason
-    if st.mode != ACTIVE or asked in (REASON_FOLLOWING, REASON_HELD):
-        return False
-    speed = st.vehicle_speed_mps
     request = st.acceleration_request_mps2
+    moved = asked == REASON_MANUAL_SET and shown != asked  # who moves the lever sees it at once
+    if st.mode != ACTIVE or moved:
+        return False
+    if shown == REASON_LIMIT and abs(st.vehicle_speed_mps - st.limit_mps) < AWAY_MPS:
+        return request > -2.0 * STILL_MPS2
+    if asked in (REASON_FOLLOWING, REASON_HELD):
+        return False
     if shown == REASON_SPEEDING_UP:
-        return request > -STILL_MPS2 and speed < st.reason_speed_mps
+        return request > -STILL_MPS2 and st.vehicle_speed_mps < st.reason_speed_mps + NEAR_MPS
     if shown == REASON_SLOWING_DOWN:
-        return request < STILL_MPS2 and speed > st.reason_speed_mps
-    if shown == REASON_MANUAL_SET:
+        return request < STILL_MPS2 and st.vehicle_speed_mps > st.reason_speed_mps - NEAR_MPS
+    return _is_place_still_so(st, asked)
+
+
+def _is_place_still_so(st: PldfState, asked: int) -> bool:
+    """Tell the same of a reason that belongs to a place or to the lever."""
+    shown = st.hmi_reason
+    target = st.target_speed_mps
+    if shown in (REASON_LEARNED_FASTER, REASON_LEARNED_SLOWER):
+        faster = shown == REASON_LEARNED_FASTER
+        lesson = target - st.base_speed_mps if faster else st.base_speed_mps - target
+        near = abs(target - st.reason_speed_mps) < AT_NUMBERS_MPS
+        return lesson > AT_SET_MPS and near
+    if shown == REASON_CURVE and st.acceleration_request_mps2 < STILL_MPS2:
         return shown == asked
-    return shown == asked and abs(speed - st.target_speed_mps) < FALSE_SHARE * AWAY_MPS
+    far = abs(st.vehicle_speed_mps - target) >= FALSE_SHARE * AWAY_MPS
+    return shown == asked and (shown == REASON_MANUAL_SET or not far)
 
 
 # What is known of a place

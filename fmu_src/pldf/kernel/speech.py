@@ -107,9 +107,9 @@ def _are_false(st: PldfState, numbers: tuple[int, int, int, int]) -> bool:
     if st.hmi_reason in (REASON_MANUAL_SET, REASON_LEARNED_OFFSET):
         near = 0
     if st.hmi_reason == REASON_SLOWING_DOWN:
-        return st.hmi_sentence_speed >= _whole(st, st.vehicle_speed_mps)
+        return st.hmi_sentence_speed > _whole(st, st.vehicle_speed_mps)
     if st.hmi_reason == REASON_SPEEDING_UP:
-        return st.hmi_sentence_speed <= _whole(st, st.vehicle_speed_mps)
+        return st.hmi_sentence_speed < _whole(st, st.vehicle_speed_mps)
     far = max(speed, base) > near
     return far or st.hmi_sentence_limit != numbers[2] or st.hmi_sentence_drive != numbers[3]
 
