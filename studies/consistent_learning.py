@@ -28,7 +28,7 @@ from pldf.kernel.codes import LEARN, LEARN_CONSISTENT, LEARN_FAITHFUL
 from pldf.kernel.units import MPS_PER_KMH
 from pldf.profiles.store import Iteration, StoredProfile
 from pldf.report import palette, paper
-from pldf.report.scene import Axis, Line, Panel, Scene
+from pldf.report.scene import Axis, Line, Panel, Scene, Stroke
 from pldf.roads import open_road
 from pldf.study.loop import ModelArrays
 from pldf.study.participants import Participant, StudySettings
@@ -46,6 +46,9 @@ ACCELERATION_MPS2: Final = {1: 2.0, -1: -1.0}
 RETURN_MPS2: Final = 1.0
 TAUGHT_MPS: Final = 1.0 * MPS_PER_KMH  # a place that changed by less was not taught
 
+COLOURS: Final = {"FAITHFUL": palette.VERMILLION, "CONSISTENT": palette.BLUE}
+DASHES: Final = ("solid", "dash", "dot")  # per share
+
 Row = dict[str, float | str]
 
 
@@ -59,6 +62,7 @@ class Run:
         wrong: places whose profile an accident changed.
         wished: places in which the driver intervened.
         taught: places that the driver's own interventions changed.
+        known: places that a lesson or a pending demonstration reaches, stretched as it is.
     """
 
     pedal: list[float] = field(default_factory=list)
@@ -68,6 +72,7 @@ class Run:
     wrong: list[NDArray[np.bool_]] = field(default_factory=list)
     wished: list[NDArray[np.bool_]] = field(default_factory=list)
     taught: list[NDArray[np.bool_]] = field(default_factory=list)
+    known: list[NDArray[np.bool_]] = field(default_factory=list)
 
 
 class Slipping(Simulation):
@@ -120,6 +125,8 @@ class Slipping(Simulation):
         run.accident.append(slips)
         run.wrong.append(_in_places(by_slip, 0.1))
         run.wished.append(_in_places(wished, 0.2))
+        waiting = iteration.pending_faster + iteration.pending_slower
+        run.known.append(_in_places(iteration.lessons + waiting > 0.0, 1.0 / PLACE_M))
         run.taught.append(_in_places(by_pedal & ~by_slip, 0.2))
 
 
@@ -182,9 +189,14 @@ def drive_all(simulation: Slipping, person: Participant, drives: int, share: flo
     return simulation.run
 
 
-def summaries(runs: Sequence[Run], learn: int, share: float) -> Iterator[Row]:
-    """Yield one row per drive: what had been taught until then, and the rates."""
+def summaries(runs: Sequence[Run], twins: Sequence[Run], learn: int, share: float) -> Iterator[Row]:
+    """Yield one row per drive: what had been taught until then, and the rates.
+
+    ``twins`` are the same people without accidents: where nothing that these do by pedal reaches,
+    they are content, and an accident is all that can be learned there.
+    """
     passes = [wait for run in runs for wait in waits(run)]
+    content = np.array([~np.any(twin.known, axis=0) for twin in twins])
     for drive in range(len(runs[0].pedal)):
         wrong = np.array([np.any(run.wrong[: drive + 1], axis=0) for run in runs])
         pressed = np.array([np.any(run.accident[: drive + 1], axis=0) for run in runs])
@@ -195,6 +207,8 @@ def summaries(runs: Sequence[Run], learn: int, share: float) -> Iterator[Row]:
             "people": len(runs),
             "pressed_percent": 100.0 * float(pressed.mean()),
             "wrong_percent": 100.0 * float(wrong.mean()),
+            "content_percent": 100.0 * float(content.mean()),
+            "wrong_content_percent": 100.0 * float(wrong[content].mean()),
             "passes_to_learn": float(np.mean(passes)),
             "pedal_percent": 100.0 * float(np.mean([run.pedal[drive] for run in runs])),
             "set_speed_percent": 100.0 * float(np.mean([run.set_speed[drive] for run in runs])),
@@ -213,19 +227,24 @@ def waits(run: Run) -> Iterator[int]:
                 yield int(learned[0]) + 1
 
 
-def one_setting(task: tuple[int, float, Sequence[Participant], int]) -> list[Row]:
-    """Drive all people with one way of learning and one share of accidents."""
-    learn, share, people, drives = task
+def one_way(task: tuple[int, Sequence[Participant], int]) -> list[Row]:
+    """Drive all people with one way of learning and each share of accidents, none first."""
+    learn, people, drives = task
     settings = StudySettings(road=open_road("study"), phases=(), function={"learn": learn})
     simulation = Slipping(settings)
-    runs = [drive_all(simulation, person, drives, share) for person in people]
-    return list(summaries(runs, learn, share))
+    rows: list[Row] = []
+    twins: list[Run] = []
+    for share in SHARES:
+        runs = [drive_all(simulation, person, drives, share) for person in people]
+        twins = twins or runs
+        rows += summaries(runs, twins, learn, share)
+    return rows
 
 
 def figure(rows: Sequence[Row]) -> Scene:
     """Return wrongly learned places and rates over drives."""
     measures = {
-        "wrong_percent": Axis("Places taught", note="by accident (%)", low=0.0),
+        "wrong_content_percent": Axis("Places taught", note="by accident (%)", low=0.0),
         "combined_percent": Axis("Pedals or set speed", note="(% of the time)", low=0.0),
         "pedal_percent": Axis("Pedals", note="(% of the time)", low=0.0),
         "set_speed_percent": Axis("Set speed", note="(% of the time)", low=0.0),
@@ -241,14 +260,13 @@ def figure(rows: Sequence[Row]) -> Scene:
 
 
 def _lines(rows: Sequence[Row], name: str) -> Iterator[Line]:
-    settings = dict.fromkeys((row["learn"], row["accidents_percent"]) for row in rows)
-    for number, (learn, share) in enumerate(settings):
-        mine = [r for r in rows if (r["learn"], r["accidents_percent"]) == (learn, share)]
+    for learn, share in product(COLOURS, SHARES):
+        mine = [r for r in rows if r["learn"] == learn and r["accidents_percent"] == 100.0 * share]
         yield Line(
             np.array([float(row["drive"]) for row in mine]),
             np.array([float(row[name]) for row in mine]),
-            palette.series(number),
-            f"{learn}, {share:g} % accidents",
+            Stroke(COLOURS[learn], 1.8, DASHES[SHARES.index(share)]),
+            f"{learn}, {100.0 * share:g} % accidents",
         )
 
 
@@ -264,15 +282,13 @@ def main() -> int:
     options = parser.parse_args()
     distribution = read_distribution(tomllib.loads(fitted.read_text())["distribution"])
     people = sample_participants(options.people, options.seed, distribution)
-    tasks = [
-        (learn, share, people, options.drives)
-        for learn, share in product((LEARN_FAITHFUL, LEARN_CONSISTENT), SHARES)
-    ]
+    tasks = [(learn, people, options.drives) for learn in (LEARN_FAITHFUL, LEARN_CONSISTENT)]
     rows: list[Row] = []
     with ProcessPoolExecutor(options.jobs) as pool:
-        for done in pool.map(one_setting, tasks):
+        for done in pool.map(one_way, tasks):
             rows += done
-            print(", ".join(f"{name} {_shown(v)}" for name, v in done[-1].items()), flush=True)
+            for row in done[options.drives - 1 :: options.drives]:
+                print(", ".join(f"{name} {_shown(v)}" for name, v in row.items()), flush=True)
     options.out.mkdir(parents=True, exist_ok=True)
     write_table(
         options.out / "consistent.csv",

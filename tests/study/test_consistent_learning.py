@@ -53,7 +53,7 @@ def test_a_slip_is_one_press_and_the_way_back(sign: int) -> None:
 
 def run_of(wished: list[list[int]], taught: list[list[int]]) -> Run:
     as_flags = [[np.array(row, dtype=bool) for row in rows] for rows in (wished, taught)]
-    return Run(wished=as_flags[0], taught=as_flags[1])
+    return Run(wished=as_flags[0], taught=as_flags[1], known=as_flags[0])
 
 
 def test_waiting_is_counted_from_the_first_intervention_to_the_lesson() -> None:
@@ -68,9 +68,12 @@ def test_a_place_is_taught_wrongly_once_and_for_all() -> None:
     run = run_of([[1, 0, 0], [0, 0, 0]], [[1, 0, 0], [0, 0, 0]])
     run.wrong, run.accident = drives, slips
     run.pedal, run.set_speed, run.combined = [0.1, 0.2], [0.0, 0.0], [0.1, 0.2]
-    first, second = summaries([run], LEARN_CONSISTENT, 0.02)
+    twin = run_of([[1, 0, 0], [0, 1, 0]], [[1, 0, 0], [0, 1, 0]])
+    first, second = summaries([run], [twin], LEARN_CONSISTENT, 0.02)
     for row in (first, second):
         assert row["wrong_percent"] == pytest.approx(100.0 / 3.0)
+        assert row["content_percent"] == pytest.approx(100.0 / 3.0)
+        assert row["wrong_content_percent"] == 0.0
         assert row["pressed_percent"] == pytest.approx(200.0 / 3.0)
         assert row["passes_to_learn"] == 1.0
     assert second["pedal_percent"] == pytest.approx(20.0)
