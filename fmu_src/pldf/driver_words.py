@@ -16,11 +16,9 @@ from .kernel.codes import INPUT_OK, WORD_FORGET, WORD_UNDO
 from .kernel.last_word import forget_here, take_back_lesson
 from .kernel.state import PldfState
 from .kernel.undo import mark_lesson
+from .profiles.learned_columns import LEARNED, fill
 from .profiles.lessons import UNDO_NOTE, lessons_in_force
-from .profiles.stored_profile import COLUMN_NAMES, Iteration, StoredProfile
-
-# What a drive leaves for the next one and a file keeps of it.
-LEARNED: Final = tuple(name for name in NextArrays._fields if name in COLUMN_NAMES)
+from .profiles.stored_profile import Iteration, StoredProfile
 
 # Printf formats, the same in the native FMUs. Those of answers stand behind the time.
 WORD_TEXTS: Final = {
@@ -78,12 +76,6 @@ def undo(st: PldfState, arrays: Driven, stored: StoredProfile | None, number: in
         mark_lesson(arrays.profile, arrays.following, arrays.work, number)
         fill(arrays.following, stored.iteration(number - 1))
     take_back_lesson(st, *arrays)
-
-
-def fill(to: ProfileArrays | NextArrays, iteration: Iteration) -> None:
-    """Copy what ``iteration`` holds of what the kernel knows."""
-    for name in LEARNED:
-        np.asarray(getattr(to, name))[:] = getattr(iteration, name)
 
 
 def keep_words(st: PldfState, arrays: Driven, stored: StoredProfile) -> StoredProfile:

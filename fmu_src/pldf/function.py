@@ -11,7 +11,7 @@ from typing import Final, cast
 
 import numpy as np
 
-from .driver_words import LEARNED, WORD_TEXTS, Driven, answer, fill, keep_words
+from .driver_words import WORD_TEXTS, Driven, answer, keep_words
 from .errors import ModelError
 from .function_words import INPUT_TEXT, KEPT_BESIDE, LAP_TEXT, NO_STORE, OLDER_READING
 from .hmi_texts import text_of
@@ -37,6 +37,7 @@ from .kernel.state import PldfState
 from .outcome_words import lines_of
 from .outcomes import Outcomes, outcomes_of
 from .own_recording import WRITTEN, Drive, folder_of, save_drive, why_not_writable
+from .profiles.learned_columns import LEARNED, fill
 from .profiles.store import (
     STORE_VARIABLE,
     Iteration,

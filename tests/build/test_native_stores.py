@@ -10,7 +10,7 @@ import pytest
 from fmi_host import Host, Slave
 from native_drives import CASES, by_source
 from native_hosts import PLATFORMS, Hosts
-from pldf.driver_words import LEARNED
+from pldf.profiles.learned_columns import LEARNED
 from pldf.profiles.profile_file import decode, encode
 from pldf.profiles.profile_format_1 import encode_1
 from pldf.profiles.stored_profile import COLUMN_NAMES

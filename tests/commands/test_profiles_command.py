@@ -16,6 +16,7 @@ from pldf.kernel.codes import BOUND_ACCEL, BOUND_JERK, BOUND_LEGAL_LIMIT
 from pldf.profiles.profile_file import encode
 from pldf.profiles.profile_format_1 import encode_1
 from pldf.profiles.store import ProfileStore, StoredProfile, read_profile, write_profile
+from pldf.profiles.stored_profile import COLUMN_NAMES
 from pldf.roads import fingerprint, write_route_csv
 from profile_examples import DRIVER, ROUTE, drive_result, new_profile
 from two_readings import lesson, newer_reading, older_reading, other_road
@@ -54,7 +55,9 @@ def example() -> StoredProfile:
     learned[100:200] += 10.0
     zeros = np.zeros(1001)
     first = replace(first, learned_mps=learned, offset_mps=zeros, interventions=3)
-    first = replace(first, lessons=zeros, bound=zeros)
+    first = replace(first, lessons=zeros, bound=zeros, drive=(learned > 20.0) + zeros)
+    unknown = {name: zeros for name in COLUMN_NAMES if "evidence" in name or "pending" in name}
+    first = replace(first, **unknown)
     learned = learned.copy()
     learned[500:510] -= 2.0
     offset = np.zeros(1001)
@@ -63,12 +66,16 @@ def example() -> StoredProfile:
     lessons[100:200], lessons[500:510], lessons[150] = 1.0, 1.0, 2.0
     bound[120:171], bound[501:505], bound[505:510] = BOUND_LEGAL_LIMIT, BOUND_ACCEL, BOUND_JERK
     second = replace(first, number=2, note="B2", learned_mps=learned, offset_mps=offset)
-    second = replace(second, lessons=lessons, bound=bound)
+    drive = first.drive + 2.0 * (learned < 20.0)
+    second = replace(second, lessons=lessons, bound=bound, drive=drive)
     return replace(profile, iterations=(first, replace(second, interventions=1)))
 
 
 def columns(line: str) -> list[str]:
     return line.split()
+
+
+PLACES = columns("from m to m mean km/h peak km/h lessons cut by drives evidence")
 
 
 def test_list(run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -111,12 +118,12 @@ def test_show_newest_and_older_state(run: Run) -> None:
         ["route", f"{ROUTE},", "1000", "m"],
         ["iteration", "2", "of", "2:", "drive,", "B2"],
         ["learned", "minus", "base", "speed:"],
-        ["from", "m", "to", "m", "mean", "km/h", "peak", "km/h", "lessons", "cut", "by"],
-        ["100", "199", "+36.0", "+36.0", "2", "legal_limit"],
-        ["500", "509", "-7.2", "-7.2", "1", "accel,", "jerk"],
+        PLACES,
+        ["100", "199", "+36.0", "+36.0", "2", "legal_limit", "1", "0.00"],
+        ["500", "509", "-7.2", "-7.2", "1", "accel,", "jerk", "2", "0.00"],
         ["learned", "offset", "of", "the", "set", "speed:"],
-        ["from", "m", "to", "m", "mean", "km/h", "peak", "km/h", "lessons", "cut", "by"],
-        ["700", "1000", "+5.0", "+5.0", "0", "-"],
+        PLACES,
+        ["700", "1000", "+5.0", "+5.0", "0", "-", "-", "0.00"],
         ["bounds:"],
         [
             "held",
@@ -147,7 +154,7 @@ def test_show_newest_and_older_state(run: Run) -> None:
 def test_show_plot(run: Run) -> None:
     status, out, _ = run("show", f"store/{NAME}", "--plot", "p.png")
     assert status == 0
-    assert out.endswith("plot       p.png\n")
+    assert "plot       p.png (the file does not hold the legal limit; name the road with" in out
     image = matplotlib.image.imread("p.png")[:, :, :3]
     assert (image.reshape(-1, 3).std(axis=1) > 0.1).mean() > 0.001  # coloured curves
     status, _, err = run("show", f"store/{NAME}", "--plot", "p.unknown")
@@ -158,11 +165,11 @@ def test_show_plot(run: Run) -> None:
 def test_history(run: Run) -> None:
     status, out, err = run("history", f"store/{NAME}")
     assert (status, err) == (0, "")
-    first, second = (columns(line) for line in out.splitlines()[3:])
+    first, second = (columns(line) for line in out.splitlines()[4:])
     change = f"{36 * 100 / 1001:.2f}"
-    assert first == ["1", "drive", "3", "100", change, "36.00", "0", "0", "B1"]
+    assert first == ["1", "drive", "3", "100", change, "36.00", "0", "0", "yes", "B1"]
     change = f"{7.2 * 10 / 1001:.2f}"
-    assert second == ["2", "drive", "1", "10", change, "7.20", "110", "60", "B2"]
+    assert second == ["2", "drive", "1", "10", change, "7.20", "110", "60", "yes", "B2"]
 
 
 def test_export_is_exact_csv(run: Run, tmp_path: Path) -> None:
@@ -227,6 +234,77 @@ def test_rollback_adds_an_iteration(run: Run) -> None:
     assert np.array_equal(read_profile(f"store/{NAME}").iteration().learned_mps, profile.base_mps)
 
 
+def test_forget_and_undo_add_iterations(run: Run) -> None:
+    status, out, err = run("forget", "17", "--store", "store", "--from", "90", "--to", "300")
+    assert (status, err) == (0, "")
+    assert out.endswith(f"{NAME}: iteration 3 is at base between 90 and 300 m\n")
+    profile = read_profile(f"store/{NAME}")
+    assert encode(replace(profile, iterations=profile.iterations[:2])) == encode(example())
+    assert (profile.iteration().kind, profile.iteration().note) == ("forget", "forget 90 to 300 m")
+    assert np.array_equal(profile.iteration().learned_mps[:400], profile.base_mps[:400])
+    _, out, _ = run("forget", "17", "--store", "store", "--from", "90", "--to", "300")
+    assert out.endswith("nothing is learned between 90 and 300 m: nothing to forget\n")
+    assert run("undo", f"store/{NAME}")[1].endswith(
+        "iteration 4 is without what iteration 2 taught\n"
+    )
+    newest = read_profile(f"store/{NAME}").iteration()
+    assert np.array_equal(newest.learned_mps, profile.base_mps)  # and 1 was forgotten
+    assert not newest.offset_mps.any()
+    _, out, _ = run("history", "17", "--store", "store")
+    told = [columns(line) for line in out.splitlines()[4:]]
+    assert [row[1] for row in told] == ["drive", "drive", "forget", "undo"]
+    assert [row[8] for row in told] == ["yes", "no", "-", "-"]
+
+
+def test_delete_deletes_all_of_a_driver_and_says_what(run: Run, tmp_path: Path) -> None:
+    store = tmp_path / "store"
+    other = new_profile(driver_id=2)
+    ProfileStore(store).append(other, drive_result(other))
+    stem = NAME.removesuffix(".pldf")
+    beside = [f"{stem}.conflict-1.pldf", f"{NAME}.refused-1", f"{NAME}.replaced-2", "copy.pldf"]
+    for name in (*beside, f"{NAME}.tmp"):
+        (store / name).write_bytes(encode(example()))
+    status, out, err = run("delete", "17", "--store", "store")
+    assert (status, err) == (0, "")
+    gone = sorted([NAME, f"{NAME}.tmp", *beside])
+    assert sorted(line.rpartition("/")[2] for line in out.splitlines()) == gone
+    assert [path.name for path in store.iterdir()] == [f"driver-000002_route-{ROUTE}.pldf"]
+    _, out, _ = run("delete", "17", "--store", "store")
+    assert out.endswith("nothing is kept of driver 17\n")
+
+
+def test_delete_of_a_file_leaves_the_driver_s_other_roads(run: Run, tmp_path: Path) -> None:
+    other = new_profile(driver_id=DRIVER, route="f" * 16)
+    ProfileStore("store").append(other, drive_result(other))
+    assert run("delete", f"store/{NAME}")[0] == 0
+    assert [p.name for p in (tmp_path / "store").iterdir()] == [
+        f"driver-000017_route-{'f' * 16}.pldf"
+    ]
+
+
+def test_show_says_what_waits_for_evidence(run: Run, tmp_path: Path) -> None:
+    profile = example()
+    waiting, wish, evidence = np.zeros(1001), np.zeros(1001), np.zeros(1001)
+    waiting[800:900], wish[800:900], evidence[800:900] = 1.0, 22.5, 1.25
+    columns_ = {"pending_faster": waiting, "pending_faster_mps": wish, "evidence_faster": evidence}
+    write_profile(
+        "w.pldf", profile.with_iteration(profile.next_iteration("drive", "", 1, columns_))
+    )
+    _, out, _ = run("show", "w.pldf")
+    assert ["800", "899", "+9.0", "1", "1.25", "faster", "by", "pedals"] in map(
+        columns, out.splitlines()
+    )
+
+
+def test_show_draws_the_limit_of_the_shipped_road_and_of_the_one_named(
+    run: Run, older: StoredProfile, tmp_path: Path
+) -> None:
+    write_profile("o.pldf", older)
+    write_route_csv(older_reading(), tmp_path / "old.csv")
+    status, out, _ = run("show", "o.pldf", "--plot", "p.png", "--route", "old.csv")
+    assert (status, out.splitlines()[-1]) == (0, "plot       p.png")
+
+
 @pytest.mark.parametrize("action", ["show", "history", "export"])
 def test_driver_number_stands_for_the_file(run: Run, action: str) -> None:
     assert run(action, "17", "--store", "store") == run(action, f"store/{NAME}")
@@ -262,7 +340,20 @@ ERRORS = [
     (2, "--iteration", ("export", "17", "--format", "1", "--out", "x", "--iteration", "1")),
     (2, "required: FILE", ("show",)),
     (2, "required: ACTION", ()),
-    (2, "invalid choice", ("delete",)),
+    (2, "invalid choice", ("erase",)),
+    (2, "required: --from, --to", ("forget", "17")),
+    (
+        1,
+        "from 900 to 800 m: no piece of this road",
+        ("forget", "17", "--from", "900", "--to", "800"),
+    ),
+    (
+        1,
+        "no piece of this road, which goes from 0 to 1000 m",
+        ("forget", "17", "--from", "900", "--to", "1001"),
+    ),
+    (1, "nothing.pldf: no such profile file", ("delete", "nothing.pldf")),
+    (1, "the profile belongs to route", ("show", "17", "--route", "study")),
 ]
 
 
@@ -293,7 +384,9 @@ def test_no_store_at_all_is_wrong_usage(run: Run, arguments: tuple[str, ...]) ->
     assert "give --store FOLDER, or set PLDF_PROFILE_STORE" in err
 
 
-@pytest.mark.parametrize("action", ["list", "show", "history", "export", "rollback"])
+@pytest.mark.parametrize(
+    "action", ["list", "show", "history", "export", "rollback", "forget", "undo", "delete"]
+)
 def test_help_shows_an_example(run: Run, action: str) -> None:
     status, out, _ = run(action, "--help")
     assert status == 0

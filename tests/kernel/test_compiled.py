@@ -17,7 +17,6 @@ import pytest
 from laboratory import STEP_S
 from numpy.typing import NDArray
 from pldf.compiled import KERNEL_MODULES, compile_modules, kernel, pack, unpack
-from pldf.function import LEARNED
 from pldf.instance import view, views, zeros
 from pldf.kernel import replay as replay_module
 from pldf.kernel import substeps
@@ -25,6 +24,7 @@ from pldf.kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArra
 from pldf.kernel.codes import INPUT_OK, LAP_BEGUN_ANEW, LEARN_CONSISTENT, LEARN_FAITHFUL, XY
 from pldf.kernel.replay import Samples
 from pldf.kernel.state import PldfState
+from pldf.profiles.learned_columns import LEARNED
 from pldf.roads import packed_route, route_arrays
 
 NODES = 1500

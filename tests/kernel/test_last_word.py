@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from laboratory import KMH, Array, PointMass, after, bent, function, play_override, road
-from pldf.driver_words import LEARNED
 from pldf.function import DrivingFunction
 from pldf.kernel.codes import (
     EVENT_FORGOTTEN,
@@ -20,6 +19,7 @@ from pldf.kernel.codes import (
     OUTCOME_UNDONE,
 )
 from pldf.outcome_words import lines_of
+from pldf.profiles.learned_columns import LEARNED
 from pldf.profiles.stored_profile import Iteration, StoredProfile
 
 LIMIT = 80.0 * KMH

@@ -6,7 +6,7 @@ import argparse
 import os
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Final
 
@@ -14,40 +14,43 @@ import numpy as np
 
 from ..errors import ModelError
 from ..files.tables import table_csv, write_table
-from ..kernel.arrays import FloatArray
-from ..kernel.codes import BOUND
 from ..kernel.units import KMH_PER_MPS
-from ..outcome_words import told_holds
-from ..outcomes import held_places
+from ..profiles.last_word import forgotten, undone
+from ..profiles.lessons import lessons_in_force, number_named, taught
 from ..profiles.store import (
     STORE_VARIABLE,
     ProfileRefused,
     ProfileStore,
     ProfileUnreadable,
     StoredProfile,
+    change_profile,
     export_format_1,
     read_profile,
     rollback_profile,
 )
-from ..profiles.stored_profile import Iteration
-from ..recordings.interventions import runs
 from .shared.moving import add_move, chosen_older, move
-from .shared.road import required_road
+from .shared.profile_places import SHOWN_MPS, show
+from .shared.road import add_road, required_road
 
 EXAMPLE: Final = """pldf profiles list --store profiles
   pldf profiles show profiles/driver-000017_route-0123456789abcdef.pldf --plot profile.png
   pldf profiles history 17 --store profiles
   pldf profiles export 17 --store profiles --out learned.csv
+  pldf profiles forget 17 --store profiles --from 800 --to 1400
+  pldf profiles undo 17 --store profiles
+  pldf profiles delete 17 --store profiles
   pldf profiles rollback 17 --store profiles --to 2
   pldf profiles move 17 --store profiles --route town.xodr --start-road 12
 
 All but 'list' take a profile file or, with a store, the number of a driver."""
 
-_SHOWN_MPS: Final = 0.1 / KMH_PER_MPS  # smaller differences round to nothing in the tables
 _LEFT_OUT: Final = "kinds, lessons, bounds and evidence are left out: it does not know them"
 _EXAMPLES: Final = {
     "list": "pldf profiles list --store profiles",
-    "show": "pldf profiles show 17 --store profiles --plot profile.png",
+    "show": "pldf profiles show 17 --store profiles --plot profile.png --route my_road.xodr",
+    "forget": "pldf profiles forget 17 --store profiles --from 800 --to 1400",
+    "undo": "pldf profiles undo 17 --store profiles",
+    "delete": "pldf profiles delete 17 --store profiles",
     "history": "pldf profiles history 17 --store profiles",
     "export": "pldf profiles export driver-000017_route-0123456789abcdef.pldf --iteration 2\n"
     "  pldf profiles export 17 --store profiles --format 1 --out old.pldf",
@@ -63,15 +66,20 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the actions and their arguments."""
     actions = parser.add_subparsers(metavar="ACTION", required=True)
     _action(actions, "list", "list the profiles of a store", _list)
-    show = _action(actions, "show", "show where the profile differs from its base", _show)
+    shown = _action(
+        actions, "show", "show what is learned where, how much and from which drives", _show
+    )
     _action(actions, "history", "show what each drive changed", _history)
     export = _action(actions, "export", "print s_m,base_mps,learned_mps,offset_mps as CSV", _export)
     rollback = _action(actions, "rollback", "make an older state the newest one", _rollback)
     add_move(
         _action(actions, "move", "carry what was learned over to a new reading of its road", _move)
     )
-    show.add_argument("--plot", metavar="PNG", type=Path, help="draw base and learned speed")
-    for command in (show, export):
+    add_road(shown, "road of the profile, whose legal limit is drawn (not needed: the shipped one)")
+    shown.add_argument(
+        "--plot", metavar="PNG", type=Path, help="draw legal limit, base and learned speed"
+    )
+    for command in (shown, export):
         command.add_argument(
             "--iteration", metavar="N", type=int, help="state after drive N, 0 = base (newest)"
         )
@@ -82,6 +90,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
         choices=(1,),
         help="write a profile file for release 0.2.0 and older, which know format 1 (with --out)",
     )
+    forget = _action(actions, "forget", "put a piece of the road back to base", _forget)
+    forget.add_argument(
+        "--from", dest="from_m", metavar="M", type=float, required=True, help="where it begins"
+    )
+    forget.add_argument(
+        "--to", dest="to_m", metavar="M", type=float, required=True, help="where it ends"
+    )
+    _action(actions, "undo", "take the newest lesson back; again: the one before", _undo)
+    _action(
+        actions, "delete", "delete all that is kept of a driver, or a file and those beside it",
+        _delete,
+    )  # fmt: skip
     rollback.add_argument(
         "--to", metavar="N", type=int, required=True, help="iteration to go back to, 0 = base"
     )
@@ -165,72 +185,37 @@ def _list(options: argparse.Namespace) -> None:
 
 
 def _show(options: argparse.Namespace) -> None:
-    path = _path(options)
-    profile = read_profile(path)
-    iteration = profile.iteration(options.iteration)
-    print(f"driver     {profile.driver_id}")
-    print(f"route      {profile.route}, {profile.nodes - 1} m")
-    told = f"{iteration.kind}, {iteration.note}" if iteration.note else iteration.kind
-    print(f"iteration  {iteration.number} of {len(profile.iterations)}: {told}")
-    _print_places("learned minus base speed", iteration.learned_mps - iteration.base_mps, iteration)
-    _print_places("learned offset of the set speed", iteration.offset_mps, iteration)
-    _print_holds(iteration)
-    if options.plot is not None:
-        _plot(options.plot, profile, iteration)
-        print(f"plot       {options.plot}")
-
-
-def _print_places(title: str, difference_mps: FloatArray, iteration: Iteration) -> None:
-    places = runs(np.abs(difference_mps) > _SHOWN_MPS)
-    if not places:
-        print(f"{title}: none")
-        return
-    print(
-        f"{title}:\n{'from m':>9} {'to m':>9} {'mean km/h':>10} {'peak km/h':>10} lessons  cut by"
-    )
-    for first, behind in places:
-        kmh = difference_mps[first:behind] * KMH_PER_MPS
-        peak = kmh[np.argmax(np.abs(kmh))]
-        lessons = int(iteration.lessons[first:behind].max())
-        print(
-            f"{first:9} {behind - 1:9} {kmh.mean():+10.1f} {peak:+10.1f} {lessons:7}  "
-            f"{_bounds(iteration.bound[first:behind])}"
-        )
-
-
-def _print_holds(iteration: Iteration) -> None:
-    """Say where a bound, not the driver's wish, holds the learned speed."""
-    told = told_holds(held_places(iteration.bound, iteration.learned_mps))
-    print("bounds: none holds it" if not told else "bounds:")
-    for hold in told:
-        print(f"  {hold}")
-
-
-def _bounds(codes: FloatArray) -> str:
-    """Return the bounds that cut a place, by name, or a dash."""
-    names = [BOUND.items[int(code)].lower() for code in np.unique(codes) if code > 0.0]
-    return ", ".join(names) or "-"
+    show(options, read_profile(_path(options)))
 
 
 def _history(options: argparse.Namespace) -> None:
     profile = read_profile(_path(options))
     print(
         "change of the learned speed against the iteration before, as absolute values;\n"
-        "then how much was shaped by a lesson and how much was cut by a bound, in all"
+        "then how much was shaped by a lesson and how much was cut by a bound, in all,\n"
+        "and whether what it taught is in force (-: it taught nothing)"
     )
     print(
         f"{'iteration':>9} {'kind':8} {'interventions':>13} {'changed m':>9} "
-        f"{'mean km/h':>9} {'max km/h':>9} {'taught m':>8} {'cut m':>7}  note"
+        f"{'mean km/h':>9} {'max km/h':>9} {'taught m':>8} {'cut m':>7} {'in force':>8}  note"
     )
+    in_force = set(lessons_in_force(profile))
     for iteration in profile.iterations:
         before = profile.iteration(iteration.number - 1)
+        now = _in_force(profile, iteration.number, in_force)
         kmh = np.abs(iteration.learned_mps - before.learned_mps) * KMH_PER_MPS
-        changed = int(np.count_nonzero(kmh > _SHOWN_MPS * KMH_PER_MPS))
+        changed = int(np.count_nonzero(kmh > SHOWN_MPS * KMH_PER_MPS))
         print(
             f"{iteration.number:9} {iteration.kind:8} {iteration.interventions:13} {changed:9} "
             f"{kmh.mean():9.2f} {kmh.max():9.2f} {np.count_nonzero(iteration.lessons):8} "
-            f"{np.count_nonzero(iteration.bound):7}  {iteration.note}"
+            f"{np.count_nonzero(iteration.bound):7} {now:>8}  {iteration.note}"
         )
+
+
+def _in_force(profile: StoredProfile, number: int, in_force: Collection[int]) -> str:
+    if profile.iteration(number).kind not in ("drive", "learn") or not taught(profile, number):
+        return "-"
+    return "yes" if number in in_force else "no"
 
 
 def _export(options: argparse.Namespace) -> None:
@@ -276,22 +261,37 @@ def _move(options: argparse.Namespace) -> None:
         move(chosen_older(_store(options), int(options.file), route), route, options)
 
 
-def _plot(path: Path, profile: StoredProfile, iteration: Iteration) -> None:
-    from matplotlib.figure import Figure  # noqa: PLC0415 - slow to import, rarely needed
+def _forget(options: argparse.Namespace) -> None:
+    path = _path(options)
+    known = len(read_profile(path).iterations)
+    profile = change_profile(path, lambda p: forgotten(p, options.from_m, options.to_m))
+    where = f"{options.from_m:g} and {options.to_m:g} m"
+    if len(profile.iterations) == known:
+        print(f"{path}: nothing is learned between {where}: nothing to forget")
+    else:
+        print(f"{path}: iteration {len(profile.iterations)} is at base between {where}")
 
-    figure = Figure(figsize=(10, 4), layout="constrained")
-    axes = figure.subplots()
-    kilometres = np.arange(profile.nodes) / 1000.0
-    for label, speed_mps in (("base", iteration.base_mps), ("learned", iteration.learned_mps)):
-        axes.plot(kilometres, speed_mps * KMH_PER_MPS, label=label, linewidth=1.2)
-    axes.set(
-        xlabel="distance in km",
-        ylabel="speed in km/h",
-        title=f"Driver {profile.driver_id}, route {profile.route}, iteration {iteration.number}",
-    )
-    axes.grid(alpha=0.3)
-    axes.legend()
-    try:
-        figure.savefig(path, dpi=120)
-    except (OSError, ValueError) as error:  # ValueError: a file type that is unknown
-        raise ModelError(f"{path}: cannot be written ({error})") from error
+
+def _undo(options: argparse.Namespace) -> None:
+    path = _path(options)
+    known = len(read_profile(path).iterations)
+    profile = change_profile(path, lambda p: undone(p)[0])
+    number = len(profile.iterations)
+    if number == known:
+        print(f"{path}: nothing that was taught is in force: nothing to undo")
+    else:
+        of = number_named(profile.iteration())
+        print(f"{path}: iteration {number} is without what iteration {of} taught")
+
+
+def _delete(options: argparse.Namespace) -> None:
+    if _is_file(options):
+        path = Path(options.file)
+        gone = ProfileStore(path.parent).delete_file(path)
+    else:
+        store = _store(options)
+        gone = store.delete(int(options.file))
+        if not gone:
+            print(f"{store.folder}: nothing is kept of driver {options.file}")
+    for path in gone:
+        print(f"deleted {path}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
@@ -123,11 +124,29 @@ def rollback_profile(
         ProfileRefused: the file is not a sound profile; it is left as it is.
         ModelError: there is no such file or iteration, it cannot be read now, or saving fails.
     """
+    return change_profile(path, lambda profile: profile.rolled_back(to), lock_timeout_s)
+
+
+def change_profile(
+    path: str | os.PathLike[str],
+    change: Callable[[StoredProfile], StoredProfile],
+    lock_timeout_s: float = LOCK_TIMEOUT_S,
+) -> StoredProfile:
+    """Put what ``change`` makes of the profile in the file ``path`` in its place; return it.
+
+    ``change`` only adds iterations; if it returns what it was given, nothing is written.
+
+    Raises:
+        ProfileRefused: the file is not a sound profile; it is left as it is.
+        ModelError: there is no such file, it cannot be read or changed, or saving fails.
+    """
     read_profile(path)  # before a folder or a lock file is made for nothing
     target = real_path(Path(path))
     with writing(target, lock_timeout_s):
-        profile = read_profile(target).rolled_back(to)
-        put(target, profile, encode(profile), lambda there: continues(profile, there))
+        present = read_profile(target)
+        profile = change(present)
+        if profile is not present:
+            put(target, profile, encode(profile), lambda there: continues(profile, there))
     return profile
 
 

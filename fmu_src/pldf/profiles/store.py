@@ -19,7 +19,10 @@ What is promised, whatever happens (two processes, kill -9, a full disk):
 
 from __future__ import annotations
 
+import glob
 import os
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -47,6 +50,7 @@ from .saving import (
     save,
 )
 from .single_file import (
+    change_profile,
     continue_profile,
     export_format_1,
     present_profile,
@@ -67,6 +71,7 @@ __all__ = [
     "ProfileUnreadable",
     "Saved",
     "StoredProfile",
+    "change_profile",
     "continue_profile",
     "export_format_1",
     "present_profile",
@@ -185,6 +190,58 @@ class ProfileStore:
                 f"{nearest_entry(self.folder)}: cannot be written to ({reason(error)}); make it "
                 "writable, or choose another profile store"
             ) from error
+
+    def delete(self, driver_id: int) -> list[Path]:
+        """Delete every file in which something of this driver is kept; return what they were.
+
+        Those are the driver's profiles under any name, what was kept beside them (conflicts,
+        refused and replaced files) and what a killed process left of a save.
+
+        Raises:
+            ModelError: a file cannot be deleted; the text says which were.
+        """
+        self._require_folder()
+        return self._delete(self._all_of(driver_id), f"driver {driver_id}")
+
+    def delete_file(self, path: Path) -> list[Path]:
+        """Delete one profile file of this folder and what was kept beside it; return what.
+
+        Raises:
+            ModelError: it is not there, or a file cannot be deleted.
+        """
+        if not path.is_file():
+            raise ModelError(f"{path}: no such profile file")
+        return self._delete(self._beside(path), path.name)
+
+    def _delete(self, paths: Iterable[Path], whose: str) -> list[Path]:
+        gone: list[Path] = []
+        try:
+            with folder_lock(self.folder, self.lock_timeout_s):
+                for path in sorted(paths):
+                    path.unlink()
+                    gone.append(path)
+        except OSError as error:
+            names = ", ".join(path.name for path in gone) or "nothing"
+            raise ModelError(
+                f"{self.folder}: not all of {whose} could be deleted ({reason(error)}); deleted: "
+                f"{names}. Mend that and delete again"
+            ) from error
+        return gone
+
+    def _beside(self, path: Path) -> set[Path]:
+        """Return ``path`` with the files that saves put beside it."""
+        stem = glob.escape(path.name.removesuffix(SUFFIX))
+        patterns = (f"{glob.escape(path.name)}.*", f"{stem}.conflict-*")
+        return {path, *(other for p in patterns for other in self.folder.glob(p))}
+
+    def _all_of(self, driver_id: int) -> set[Path]:
+        named = set(self.folder.glob(f"driver-{driver_id:06d}_route-*"))
+        for path in self.files():
+            with suppress(ModelError):  # what cannot be read is known by its name alone
+                profile = read(path)
+                if profile is not None and profile.driver_id == driver_id:
+                    named |= self._beside(path)
+        return named
 
     def rollback(self, driver_id: int, route: str, to: int) -> StoredProfile:
         """As ``rollback_profile``, for the file of this driver on this route."""

@@ -11,7 +11,7 @@ from math import inf
 from typing import Any, Final
 
 from ... import own_recording
-from ...driver_words import LEARNED, WORD_TEXTS
+from ...driver_words import WORD_TEXTS
 from ...fmi.phases import Phase
 from ...fmi.session import STEP_MAX_S
 from ...function_words import OLDER_READING
@@ -36,6 +36,7 @@ from ...outcomes import SAME_OFFSET_MPS
 from ...own_recording import COLUMNS as RECORDED
 from ...own_recording import HEAD_FIELDS
 from ...profiles.file_parts import ALIGNMENT, CHECKSUM_SIZE, COLUMNS, NODES_MAX, Column
+from ...profiles.learned_columns import LEARNED
 from ...profiles.older_reading import ALIKE_MPS, ALIKE_SHARE, LENGTH_SHARE
 from ...profiles.profile_format_1 import COLUMNS_1
 from ...profiles.stored_profile import KINDS
