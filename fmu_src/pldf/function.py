@@ -7,21 +7,19 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Final, cast
+from typing import cast
 
 import numpy as np
 
+from .bound_parameters import check_bounds
 from .driver_words import WORD_TEXTS, Driven, answer, keep_words
 from .errors import ModelError
-from .function_words import INPUT_TEXT, KEPT_BESIDE, LAP_TEXT, NO_STORE, OLDER_READING
+from .function_words import KEPT_BESIDE, NO_STORE, OLDER_READING, WATCHES
 from .hmi_texts import text_of
-from .instance import Arrays, Instance, Watch, views, zeros
+from .instance import Arrays, Instance, views, zeros
 from .kernel import drive
 from .kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from .kernel.codes import (
-    LAP_ARRIVED,
-    LAP_BEGUN_ANEW,
-    LAP_RECORDED,
     PROFILE_BASE,
     PROFILE_LOADED,
     PROFILE_NOT_PERSISTED,
@@ -32,7 +30,7 @@ from .kernel.codes import (
 from .kernel.learning import learn_drive
 from .kernel.preparation import adopt_learned, start_drive
 from .kernel.recorder import learns
-from .kernel.signals import signals_of, since, text_output, text_parameter
+from .kernel.signals import since, text_output, text_parameter
 from .kernel.state import PldfState
 from .outcome_words import lines_of
 from .outcomes import Outcomes, outcomes_of
@@ -48,24 +46,6 @@ from .profiles.store import (
     StoredProfile,
 )
 from .roads import Mark, Route, chosen_route, fingerprint, route_arrays
-
-# Bounds of every profile, and what the base profile is planned with: it must keep to them. Where 0
-# is in the range of a parameter, it stands for no bound.
-BOUNDS: Final = tuple(
-    (f"learning_{bound}", f"planner_{bound}")
-    for bound in ("lateral_accel_max_mps2", "accel_max_mps2", "accel_min_mps2", "jerk_max_mps3")
-)
-
-
-# What the user is told about while driving.
-WATCHES: Final = (
-    Watch("input_state", tuple(INPUT_TEXT[code] for code in sorted(INPUT_TEXT))),
-    Watch(
-        "lap",
-        tuple(LAP_TEXT[code] for code in sorted(LAP_TEXT)),
-        quiet=(LAP_RECORDED, LAP_ARRIVED, LAP_BEGUN_ANEW),
-    ),
-)
 
 
 @dataclass(slots=True)
@@ -302,23 +282,6 @@ class DrivingFunction(Instance[PldfState]):
         if saved.warning:
             self.report("warning", saved.warning)
         self.report("info", f"{what}, saved in {saved.path}")
-
-
-def check_bounds(st: PldfState) -> None:
-    """Raise ModelError if a base profile could break the bounds of a learned one."""
-    names = {signal.field: signal.name for signal in signals_of(st)}
-    for bound, planned in BOUNDS:
-        allowed, used = getattr(st, bound), getattr(st, planned)
-        if _weaker(allowed, used):
-            raise ModelError(
-                f"parameter {names[bound]} = {allowed:g}: it bounds every profile, so it must "
-                f"not be weaker than {names[planned]} = {used:g}"
-            )
-
-
-def _weaker(bound: float, used: float) -> bool:
-    """Tell whether ``used`` goes beyond ``bound``; 0 is no bound."""
-    return bound != 0.0 and (used == 0.0 or abs(used) > abs(bound))
 
 
 def follow_newest(profile: ProfileArrays, stored: StoredProfile) -> None:

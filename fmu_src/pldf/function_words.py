@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from .instance import Watch
 from .kernel.codes import (
     INPUT_INVALID,
     INPUT_OK,
@@ -30,6 +31,16 @@ LAP_TEXT: Final = {
     "terminated, what follows is not; reset the function, or make a new instance, for a new drive",
     LAP_BEGUN_ANEW: "the car was set back before the function was active: the drive begins here",
 }
+
+# What the user is told about while driving.
+WATCHES: Final = (
+    Watch("input_state", tuple(INPUT_TEXT[code] for code in sorted(INPUT_TEXT))),
+    Watch(
+        "lap",
+        tuple(LAP_TEXT[code] for code in sorted(LAP_TEXT)),
+        quiet=(LAP_RECORDED, LAP_ARRIVED, LAP_BEGUN_ANEW),
+    ),
+)
 
 NO_STORE: Final = (
     "no profile store: nothing is loaded or saved. Set the parameter profile_store or the "

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from ...bound_parameters import BOUNDS
 from ...compiled import KERNEL_MODULES
-from ...function import BOUNDS, WATCHES, Files
+from ...function import Files
+from ...function_words import WATCHES
 from ...kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from ...kernel.drive import drive_step, refresh
 from ...kernel.last_word import forget_here, take_back_lesson
