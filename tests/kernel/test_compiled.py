@@ -113,6 +113,8 @@ class Bench:
     def learn(self) -> None:
         """Learn, and take over what was learned, under a harder bound: so the bounds cut it."""
         given = (self.st, self.route, self.profile, self.trace, self.work, self.following)
+        for name in ("evidence_slower", "pending_slower"):  # what this drive keeps silent about
+            np.asarray(getattr(self.profile, name))[:] = 1.0
         # The same drive, three times: evidence waits, then accepts; then all is learned at once.
         for learn in (LEARN_CONSISTENT, LEARN_CONSISTENT, LEARN_FAITHFUL):
             self.st.learn = learn
