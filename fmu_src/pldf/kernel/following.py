@@ -114,7 +114,9 @@ def _may_touch(st: PldfState, step_s: float) -> bool:
         return False
     speed = max(st.vehicle_speed_mps, 0.0)
     request = st.acceleration_request_mps2
-    return stopping_room(st, st.lead_gap_m, speed, request, step_s) < 0.0
+    # A faster lead leaves room at its stop even if they touch now.
+    room_m = min(st.lead_gap_m, stopping_room(st, st.lead_gap_m, speed, request, step_s))
+    return room_m < 0.0
 
 
 def tell_take_over(st: PldfState, needed: bool) -> None:
