@@ -13,8 +13,9 @@ from .state import PldfState
 # Halvings of the range in which the safe request is sought: 5.5 m/s2 to 1 mm/s2 (decision).
 HALVINGS = 12
 # The gap that braking as hard as allowed leaves when both stand (decision): what the calculation
-# does not know of vehicle and step has to fit in.
+# does not know of vehicle and step has to fit in, and a braking that is a bit weaker than asked.
 RESERVE_M = 0.5
+RESERVE_SHARE = 0.015  # of the way to a stop
 # What a car that is held at standstill asks for (decision): enough for every grade that it can
 # stop on by itself, for the vehicle holds what is not asked to go.
 HOLD_MPS2 = -0.5
@@ -45,13 +46,15 @@ def safe_request(
 
     While the lead brakes as hard as assumed it falls as fast as it may, and so stays kept.
     """
-    if stopping_room(st, gap_m, speed_mps, request_mps2, delay_s) >= RESERVE_M:
+    stop_m = 0.5 * speed_mps * speed_mps / -st.control_request_min_mps2
+    reserve_m = RESERVE_M + RESERVE_SHARE * stop_m
+    if stopping_room(st, gap_m, speed_mps, request_mps2, delay_s) >= reserve_m:
         return request_mps2
     low = st.control_request_min_mps2
     high = request_mps2
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if stopping_room(st, gap_m, speed_mps, middle, delay_s) >= RESERVE_M:
+        if stopping_room(st, gap_m, speed_mps, middle, delay_s) >= reserve_m:
             low = middle
         else:
             high = middle
