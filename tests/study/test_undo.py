@@ -6,7 +6,7 @@ import pytest
 from pldf.study.participants import StudySettings
 from pldf.study.simulation import Simulation
 
-from studies.undo import MISTAKES, THRESHOLDS_KMH, Undoing, mistakes, straight_road, undo
+from studies.undo import MISTAKES, THRESHOLDS_KMH, Undoing, mistakes, sampled, straight_road, undo
 
 
 @pytest.fixture(scope="module")
@@ -26,6 +26,14 @@ def test_every_mistake_is_gone_after_about_as_many_drives_as_halving_takes(
     for row in undone:
         assert 0 <= row.drives <= row.halvings + 1, row
         assert row.left_kmh < 1.2 * row.threshold_kmh, row
+
+
+def test_drawn_mistakes_are_gone_as_fast_in_nine_of_ten_cases() -> None:
+    simulation = Simulation(StudySettings(road=straight_road(), phases=()))
+    rows = list(sampled(simulation, 30))
+    assert len(rows) == 30
+    assert sum(row.is_fast for row in rows) >= 27
+    assert sum(row.halvings > 0 for row in rows) > 20  # there was something to undo
 
 
 def test_mistakes_are_learned_but_a_stop_is_not(undone: list[Undoing]) -> None:
