@@ -14,9 +14,9 @@ import pytest
 from pldf.recordings.recording import recording_csv
 
 NAMES = {
-    "Analysis", "Drive", "Learned", "ModelError", "Recording", "Route", "StoredProfile",
+    "Analysis", "Drive", "Learned", "ModelError", "Recording", "Replay", "Route", "StoredProfile",
     "analyse", "base_profile", "drive", "learn", "open_route", "read_profile", "read_recording",
-    "run_study", "write_profile",
+    "replay", "run_study", "write_profile",
 }  # fmt: skip
 
 
