@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import zipfile
 from xml.etree import ElementTree
@@ -35,6 +36,21 @@ def test_fmus_are_valid_and_complete(fmu_folder, name):
     assert not [n for n in names if any(part in n for part in unwanted)]
 
 
+@pytest.mark.parametrize("name", fmu_build.FMUS)
+def test_every_column_of_the_documentation_has_a_title(fmu_folder, name):
+    page = zipfile.ZipFile(fmu_folder / f"{name}.fmu").read("documentation/index.html").decode()
+    tables = re.findall(r"<table>.*?</table>", page, re.DOTALL)
+    assert tables
+    for table in tables:
+        titles = re.findall(r"<th>(.*?)</th>", table)
+        assert titles[0] == "Name"
+        assert titles[-1] == "Description"
+        rows = re.findall(r"<tr>(<td.*?)</tr>", table, re.DOTALL)
+        assert rows
+        assert {row.count("<td") for row in rows} == {len(titles)}
+        assert all(row.endswith("</td>") and not row.endswith("></td>") for row in rows)
+
+
 def test_same_sources_give_the_same_bytes(cart_fmu, tmp_path):
     shutil.copytree(EXAMPLE, tmp_path / "moved")
     again = build(cart_recipe(tmp_path / "moved"), tmp_path / "out")
@@ -43,7 +59,7 @@ def test_same_sources_give_the_same_bytes(cart_fmu, tmp_path):
 
 def test_guids_differ(fmu_folder, cart_fmu):
     guids = {Host(p).description.guid for p in [cart_fmu, *fmu_folder.glob("*.fmu")]}
-    assert len(guids) == 4
+    assert len(guids) == 1 + len(fmu_build.FMUS)
 
 
 def test_invalid_fmu_fails_the_build(tmp_path, monkeypatch, capsys):
@@ -120,7 +136,13 @@ def test_units_and_types_are_declared(xml):
     types = {t.get("name") for t in xml.findall("TypeDefinitions/SimpleType")}
     for variable in xml.findall("ModelVariables/ScalarVariable"):
         (kind,) = variable
-        assert kind.get("unit") is None or kind.get("unit") in units
+        assert (kind.get("unit") in units) == (kind.tag == "Real")
+        assert (kind.get("quantity") is not None) == (kind.tag == "Real")
+        connected = variable.get("causality") != "parameter"
+        assert (kind.get("nominal") is not None) == (kind.tag == "Real" and connected)
+        ratios = ("driver.gas_pedal", "driver.brake_pedal", "rate.", "hmi.confidence")
+        if variable.get("name").startswith(ratios):
+            assert kind.get("unit") == "1"
         if kind.tag == "Enumeration":
             assert kind.get("declaredType") in types
         assert kind.get("displayUnit") == ("km/h" if kind.get("unit") == "m/s" else None)

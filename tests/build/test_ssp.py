@@ -246,7 +246,7 @@ def test_schemas_and_checks_of_pyssp(package: Path, series: Series) -> None:
                 for element in described.system.elements
                 for binding in element.parameter_bindings
             ]
-        assert units == {"m", "m/s", "m/s2", "m/s3", "s"}
+        assert units == {"1", "m", "m/s", "m/s2", "m/s3", "s"}
         assert sorted(bound) == [f"resources/{part}.ssv" for part in sorted(series.parts)]
         for values in opened.ssv:
             values.__check_compliance__()

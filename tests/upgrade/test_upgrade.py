@@ -47,6 +47,8 @@ def _kept(key: str, before: Any, now: Any) -> bool:
         return bool(now[: len(before)] == before)
     if key == "choices" and before:
         return now is None or set(before) <= set(now)
+    if key == "unit" and before is None:
+        return now in (None, "1")  # what had no unit is a pure number, and says so now
     return bool(before == now)
 
 

@@ -21,6 +21,7 @@ from ..fmi.description import (
     enumerations,
     header,
     type_attributes,
+    unit_of,
 )
 from ..kernel.signals import Signal, by_reference, time_reference
 
@@ -52,7 +53,7 @@ def model_description3(model: Model, log_categories: Mapping[str, str]) -> Eleme
     about = {"fmiVersion": "3.0", "instantiationToken": NO_GUID, **header(model)}
     root = Element("fmiModelDescription", about)
     SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **_CAPABILITIES})
-    add_units(root, {"s", *(s.unit for s in model.signals)})
+    add_units(root, {"s", *(unit_of(s) for s in model.signals)})
     _types(root, model.signals)
     add_defaults(root, model, log_categories)
     variables = SubElement(root, "ModelVariables")

@@ -8,6 +8,7 @@ from inspect import cleandoc
 from string import Template
 from typing import Final
 
+from ..fmi.description import unit_of
 from ..fmi.units import DISPLAY
 from ..kernel.signals import Signal
 
@@ -17,10 +18,14 @@ _PAGE: Final = Template("""<!DOCTYPE html>
 <meta charset="utf-8">
 <title>$name</title>
 <style>
-body { font: 15px/1.5 system-ui, sans-serif; max-width: 64em; margin: 2em auto; padding: 0 1em; }
+body { font: 15px/1.5 system-ui, sans-serif; max-width: 90em; margin: 2em auto; padding: 0 1em; }
+p { max-width: 46em; }
+div.wide { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; }
 th, td { border-bottom: 1px solid #ccc; padding: .3em .6em; text-align: left; vertical-align: top; }
 td.number { white-space: nowrap; }
+td.range { min-width: 12em; max-width: 26em; }
+td.text { min-width: 22em; }
 code { font-size: 95%; }
 </style>
 </head>
@@ -36,13 +41,15 @@ $inputs
 <p>Valid as soon as the initialization has ended.</p>
 $outputs
 <h2>Parameters</h2>
-<p>Set before the initialization ends; a value outside its range is refused with a message.</p>
+<p>Set before the initialization ends, tunable ones also between steps; a value outside its range is
+refused with a message.</p>
 $parameters
 <h2>Running it</h2>
 $running
 </body>
 </html>
 """)
+TITLES: Final = ("Name", "Type", "Unit", "Start", "Range", "Description")
 _STEPS: Final = "co-simulation, default step 10 ms, any step from 0.1 ms to 100 ms."
 _LOGGING: Final = "Switch the importer's logging on to see the messages of the model."
 IN_PYTHON: Final = f"""<p>FMI 2.0 {_STEPS} The FMU runs in
@@ -89,20 +96,23 @@ def document(name: str, about: str, text: str, signals: Sequence[Signal], runnin
 def _table(signals: Sequence[Signal]) -> str:
     if not signals:
         return "<p>None.</p>"
-    head = "".join(f"<th>{title}</th>" for title in ("Name", "Type", "Unit", "Start", "Range", ""))
+    head = "".join(f"<th>{title}</th>" for title in TITLES)
     rows = "\n".join(f"<tr>{_row(signal)}</tr>" for signal in signals)
-    return f"<table>\n<tr>{head}</tr>\n{rows}\n</table>"
+    return f'<div class="wide"><table>\n<tr>{head}</tr>\n{rows}\n</table></div>'
 
 
 def _row(signal: Signal) -> str:
     start = "" if signal.causality == "output" else _start(signal)
-    cells = (signal.kind, signal.unit, start, _range(signal), signal.description)
-    name = f"<td><code>{escape(signal.name)}</code></td>"
-    return (
-        name
-        + "".join(f'<td class="number">{escape(c)}</td>' for c in cells[:-2])
-        + "".join(f"<td>{escape(c)}</td>" for c in cells[-2:])
+    kind = f"{signal.kind}, tunable" if signal.tunable else signal.kind
+    cells = (
+        ("number", kind),
+        ("number", unit_of(signal)),
+        ("number", start),
+        ("range", _range(signal)),
+        ("text", signal.description),
     )
+    name = f"<td><code>{escape(signal.name)}</code></td>"
+    return name + "".join(f'<td class="{of}">{escape(text)}</td>' for of, text in cells)
 
 
 def _start(signal: Signal) -> str:
@@ -117,7 +127,8 @@ def _start(signal: Signal) -> str:
 
 def _range(signal: Signal) -> str:
     if signal.enumeration is not None:
-        return ", ".join(f"{code} {item}" for code, item in enumerate(signal.enumeration.items))
+        items = enumerate(signal.enumeration.items)
+        return ", ".join(f"{code}\N{NO-BREAK SPACE}{item}" for code, item in items)
     if signal.low is None and signal.high is None:
         return ""
     low, high = signal.range

@@ -17,7 +17,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from .. import __version__
 from ..kernel.signals import Enumeration, Signal, by_reference
-from .units import DISPLAY, base_unit
+from .units import DISPLAY, PURE, QUANTITIES, base_unit
 
 STEP_SIZE_S: Final = 0.01
 # Replaced when the archive is written.
@@ -64,7 +64,7 @@ def model_description(model: Model, log_categories: Mapping[str, str]) -> Elemen
     root = Element("fmiModelDescription", {"fmiVersion": "2.0", "guid": NO_GUID, **header(model)})
     capabilities = {"needsExecutionTool": str(not model.native).lower(), **_CAPABILITIES}
     SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **capabilities})
-    add_units(root, {s.unit for s in model.signals})
+    add_units(root, {unit_of(s) for s in model.signals})
     _types(root, model.signals)
     add_defaults(root, model, log_categories)
     variables = SubElement(root, "ModelVariables")
@@ -169,16 +169,26 @@ def type_attributes(signal: Signal) -> dict[str, str]:
     described = {}
     if signal.enumeration is not None:
         described["declaredType"] = signal.enumeration.name
-    if signal.unit:
-        described["unit"] = signal.unit
-        if signal.unit in DISPLAY:
-            described["displayUnit"] = DISPLAY[signal.unit][0]
+    unit = unit_of(signal)
+    if unit:
+        described["unit"] = unit
+    if unit in DISPLAY:
+        described["displayUnit"] = DISPLAY[unit][0]
+    if unit in QUANTITIES:
+        described["quantity"], nominal = QUANTITIES[unit]
+        if signal.causality != "parameter":
+            described["nominal"] = literal(signal, nominal)
     for name, bound in (("min", signal.low), ("max", signal.high)):
         if bound is not None:
             described[name] = literal(signal, bound)
     if signal.causality in ("parameter", "input"):
         described["start"] = literal(signal, signal.start)
     return described
+
+
+def unit_of(signal: Signal) -> str:
+    """Return the unit in which a variable is written; every Real has one, others have none."""
+    return signal.unit or (PURE if signal.kind == "Real" else "")
 
 
 def literal(signal: Signal, value: float | str) -> str:

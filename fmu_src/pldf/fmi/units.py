@@ -22,6 +22,24 @@ _SYMBOLS: Final[dict[str, tuple[float, dict[str, int]]]] = {
 # What a person reads instead: display value = factor * value in the unit.
 DISPLAY: Final[dict[str, tuple[str, float]]] = {"m/s": ("km/h", 3.6)}
 
+PURE: Final = "1"  # the unit of shares, pedals and other ratios
+# Name of the quantity, after Modelica.Units.SI, and the usual size of what is connected.
+QUANTITIES: Final[dict[str, tuple[str, float]]] = {
+    PURE: ("Ratio", 1.0),
+    "m": ("Length", 100.0),
+    "m/s": ("Velocity", 10.0),
+    "m/s2": ("Acceleration", 1.0),
+    "m/s3": ("Jerk", 1.0),
+    "s": ("Time", 1.0),
+    "1/m": ("Curvature", 0.01),
+    "1/s": ("Rate", 1.0),
+    "kg": ("Mass", 1000.0),
+    "kg/m3": ("Density", 1.0),
+    "m2": ("Area", 1.0),
+    "N": ("Force", 1000.0),
+    "W": ("Power", 1e4),
+}
+
 _FACTOR: Final = re.compile(r"([A-Za-z]+)(\d?)")
 
 
