@@ -205,7 +205,7 @@ def test_a_sentence_stays_for_a_second_unless_it_is_false() -> None:
 
 def test_an_event_waits_and_a_warning_does_not() -> None:
     car = driving(road(3000.0), BASE)
-    car.run(0.5)
+    car.run(1.5)
     car.step(STEP_S, lever_up=1)  # "101, set by you" begins now
     car.step(STEP_S, lever_up=0, teach_pause=1)
     car.made.say()

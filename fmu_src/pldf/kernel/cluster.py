@@ -178,8 +178,7 @@ def _is_still_true(st: PldfState, asked: int) -> bool:
     """Tell whether the reason shown is not contradicted by what is ``asked`` for and done now."""
     shown = st.hmi_reason
     request = st.acceleration_request_mps2
-    moved = asked == REASON_MANUAL_SET and shown != asked  # who moves the lever sees it at once
-    if st.mode != ACTIVE or moved:
+    if st.mode != ACTIVE:
         return False
     if shown == REASON_LIMIT and abs(st.vehicle_speed_mps - st.limit_mps) < AWAY_MPS:
         return request > -2.0 * STILL_MPS2
