@@ -84,7 +84,7 @@ def _asked_by(st: PldfState, route: RouteArrays, profile: ProfileArrays, place: 
     """Return what asks for the present target speed, and the speed asked for."""
     if st.mode != ACTIVE:
         return _reason_of_mode(st.mode), 0.0, 0.0
-    if st.following_limits != 0:
+    if st.lead_acts != 0:
         return (REASON_HELD if waits_for_driver(st) else REASON_FOLLOWING), 0.0, 0.0
     if st.manual_set_mps > 0.0 and st.s_m + st.ahead_m < st.manual_end_m:
         return _asked_by_hand(st, route, profile, place)

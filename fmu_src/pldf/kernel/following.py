@@ -18,6 +18,8 @@ from .tracking import profile_request
 STOPPING_MPS = 0.4
 RESTART_MPS2 = 0.3
 STANDS_MPS = 0.05  # vehicles at rest may tell a little speed
+# Behind a lead that has left, the car is back at its profile this close to it (decision).
+CAUGHT_UP_MPS = 1.0
 TIME_GAP_MAX_S = 100.0
 
 
@@ -27,6 +29,7 @@ def look_ahead(st: PldfState, route: RouteArrays, profile: ProfileArrays, step_s
         st.lead_counts = 0
         st.standing = 0
         st.less_ns = -1
+        st.lead_acts = 0
         st.following_limits = 0
         st.following_time_gap_s = 0.0
         tell_take_over(st, st.lead_present != 0 and st.mode == FAULT)
@@ -66,7 +69,11 @@ def _time_gap(gap_m: float, speed_mps: float) -> float:
 def _update_limits(
     st: PldfState, route: RouteArrays, profile: ProfileArrays, step_s: float
 ) -> None:
-    """Tell whether following asks for less than the profile, or did a short while ago."""
+    """Tell whether following asks for less than the profile, or did a short while ago.
+
+    What the lead has done lasts until the car is back at its profile: who helps with the gas there
+    wishes the profile, not the speed of the car that has left.
+    """
     if st.mode in (OFF, FAULT):
         st.less_ns = -1
     elif st.standing != 0:
@@ -76,7 +83,10 @@ def _update_limits(
         if followed_request(st, request, 0.0, step_s) < request:
             st.less_ns = st.time_ns
     recent = st.less_ns >= 0 and st.time_ns - st.less_ns <= 1e9 * st.following_limits_s
-    st.following_limits = 1 if recent else 0
+    slow = st.vehicle_speed_mps < st.target_speed_mps - CAUGHT_UP_MPS
+    catching_up = st.less_ns >= 0 and st.following_limits != 0 and slow
+    st.lead_acts = 1 if recent else 0
+    st.following_limits = 1 if recent or catching_up else 0
 
 
 def _update_standing(st: PldfState) -> None:

@@ -205,7 +205,8 @@ class Outputs:
         "0.3", flag_output("The driver has to brake: following alone may not do")
     )
     following_limits: int = since(
-        "0.3", flag_output("The car ahead, not the profile, sets the speed")
+        "0.3",
+        flag_output("The car ahead sets the speed, or did and the profile's is not reached yet"),
     )
     following_time_gap_s: float = since(
         "0.3",
@@ -286,6 +287,7 @@ class Memory:
     lead_mps: float = 0.0
     lead_seen_ns: int = nanoseconds(at_most="time_ns")
     lead_ns: int = nanoseconds(at_most="time_ns")  # of this gap
+    lead_acts: int = flag()  # following asks for less, or did a moment ago
     less_ns: int = nanoseconds(low=-1, start=-1, at_most="time_ns")  # following asked for less
     standing: int = flag()  # held behind a lead car
     standing_ns: int = nanoseconds(at_most="time_ns")  # since then, or since RESUME
