@@ -35,7 +35,7 @@ from .kernel.state import PldfState
 from .outcome_words import lines_of
 from .outcomes import Outcomes, outcomes_of
 from .own_recording import WRITTEN, Drive, folder_of, save_drive, why_not_writable
-from .profiles.learned_columns import LEARNED, fill
+from .profiles.learned_columns import fill, next_iteration
 from .profiles.store import (
     STORE_VARIABLE,
     Iteration,
@@ -117,7 +117,7 @@ class DrivingFunction(Instance[PldfState]):
         self.stored = stored
         self.record.profile_iteration = len(stored.iterations)
         if self.record.apply_learned and stored.iterations:
-            follow_newest(self.profile, stored)
+            fill(self.profile, stored.iteration())
             adopt_learned(self.record, self.route, self.profile, self.work)
 
     def attach(self, arrays: Arrays) -> None:
@@ -282,30 +282,3 @@ class DrivingFunction(Instance[PldfState]):
         if saved.warning:
             self.report("warning", saved.warning)
         self.report("info", f"{what}, saved in {saved.path}")
-
-
-def follow_newest(profile: ProfileArrays, stored: StoredProfile) -> None:
-    """Fill ``profile`` with the newest iteration of ``stored``, not yet adopted."""
-    fill(profile, stored.iteration())
-
-
-def next_iteration(
-    st: PldfState,
-    profile: ProfileArrays,
-    following: NextArrays,
-    stored: StoredProfile,
-    kind: str = "drive",
-) -> Iteration:
-    """Return what a finished drive leaves behind as the next iteration of ``stored``.
-
-    What the kernel does not know yet is carried over from the iteration that the drive followed.
-    """
-    truncated = ", last intervention truncated" if st.intervening else ""
-    columns = {name: np.array(getattr(following, name)) for name in LEARNED}
-    return stored.next_iteration(
-        kind,
-        f"drive{truncated}",
-        st.drive_interventions,
-        {"base_mps": np.array(profile.base_mps), **columns},
-        after=None if st.apply_learned else 0,
-    )

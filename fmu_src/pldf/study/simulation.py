@@ -34,12 +34,13 @@ from ..compiled import KERNEL_MODULES, Namespace, compile_modules, pack, unpack
 from ..cosim.drive_limits import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS
 from ..cosim.values import Value
 from ..errors import ModelError
-from ..function import DrivingFunction, follow_newest, next_iteration
+from ..function import DrivingFunction
 from ..instance import Instance, zeros
 from ..kernel.arrays import FloatArray, NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from ..kernel.codes import LEARN_OFF, OFF, STANDBY
 from ..kernel.signals import signals_of
 from ..kernel.state import PldfState
+from ..profiles.learned_columns import fill, next_iteration
 from ..profiles.store import Iteration, StoredProfile
 from ..recordings.columns import COLUMNS
 from ..recordings.recording import Recording
@@ -156,7 +157,7 @@ class Simulation:
         """Return new arrays with the profile that a drive of ``phase`` follows."""
         profile = ProfileArrays(*(np.array(column) for column in self.base))
         if phase.apply_learned and stored.iterations:
-            follow_newest(profile, stored)
+            fill(profile, stored.iteration())
             st = pack(self.function.record)
             self.code["adopt_learned"](st[0], self.route, profile, zeros(Work, self.nodes))
         return profile

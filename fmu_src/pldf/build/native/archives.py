@@ -26,7 +26,8 @@ from .linking import FLAGS, HEADERS, link, universal
 from .model import NativeModel
 from .objects import compile_objects
 from .symbols import check_library
-from .table import header, signals, source
+from .table import signals, source
+from .table_header import header
 
 _TEXTS: Final = {
     "route_file": "Route prepared by 'pldf route FILE --export OUT.prepared', in place of route_id",
