@@ -53,6 +53,19 @@ def test_reading_and_setting_again_change_nothing(
     hosts.run(platform, "reads", file, tmp_path / "script", cwd=tmp_path)
 
 
+@pytest.mark.parametrize(("platform", "version"), ON)
+def test_resources_are_found_from_the_library_where_the_named_folder_is_empty(
+    hosts: Hosts, platform: str, version: int, tmp_path: Path
+) -> None:
+    case = next(case for case in CASES.values() if case.model == "AdaptivePLDF")
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    fmu = hosts.fmu(platform, version, case.model)
+    file = fmu.described(PLATFORMS[platform], tmp_path / "fmu.txt", case.settings, resources=empty)
+    case.script()[:2000].tofile(tmp_path / "script")
+    hosts.run(platform, "reads", file, tmp_path / "script", cwd=tmp_path)
+
+
 def test_fmi_2_and_fmi_3_in_one_process(hosts: Hosts, tmp_path: Path) -> None:
     here = PLATFORMS["linux64"]
     files = [

@@ -132,6 +132,7 @@ class Unpacked:
         path: Path,
         settings: Mapping[str, Value] | None = None,
         library: Path | None = None,
+        resources: Path | None = None,
     ) -> Path:
         """Write what the C host has to know to ``path``, and return it.
 
@@ -140,13 +141,14 @@ class Unpacked:
             path: of the file to be written.
             settings: parameters by name.
             library: in place of the FMU's own.
+            resources: folder that the importer names, in place of the FMU's own.
         """
-        resources = platform.path(self.folder / "resources")
+        named = platform.path(resources or self.folder / "resources")
         lines = [
             f"version {self.version}",
             f"library {platform.path(library or self.library(platform))}",
             f"token {self.description.guid}",
-            f"resources {resources + '/' if self.version == 3 else address(resources)}",
+            f"resources {named + '/' if self.version == 3 else address(named)}",
         ]
         for causality in ("parameter", "input", "output"):
             for v in self.variables(causality):
