@@ -62,7 +62,7 @@ def update_cluster(st: PldfState, route: RouteArrays, profile: ProfileArrays) ->
     """Update reason and sentence at the end of a step, when all other outputs are known."""
     place = place_at(len(route.limit_mps), st.s_m + st.ahead_m)
     asked = _asked_by(st, route, profile, place)
-    now = _as_driven(st, asked)
+    now = _as_driven(st, profile, place, asked)
     young = st.time_ns - max(st.reason_ns, st.numbers_ns) < HOLD_NS
     if now[0] == st.hmi_reason or not (young and _is_still_true(st, asked[0])):
         if now[0] != st.hmi_reason:
@@ -144,15 +144,15 @@ def _asked_by_hand(
     return REASON_SPEEDING_UP, manual, 0.0
 
 
-def _as_driven(st: PldfState, asked: Reason) -> Reason:
-    """Return ``asked``, or that the car goes to another speed, if the car does not do as it says.
+def _as_driven(st: PldfState, profile: ProfileArrays, place: Place, asked: Reason) -> Reason:
+    """Return ``asked``, or what the car does instead, if it does not do as ``asked`` says.
 
-    Where neither is so, as in the moment in which the request turns, the limit is what is said.
+    Where the profile is steep, the request may lead away from the target. Where it does not even
+    that, as in the moment in which the request turns, the limit is what is said.
     """
     reason = asked[0]
-    if st.mode != ACTIVE or reason in (REASON_FOLLOWING, REASON_HELD):
-        return asked
-    if _does_so(st, asked):
+    stays = st.mode != ACTIVE or reason in (REASON_FOLLOWING, REASON_HELD)
+    if stays or _does_so(st, asked):
         return asked
     speed = st.vehicle_speed_mps
     target = st.target_speed_mps
@@ -162,7 +162,14 @@ def _as_driven(st: PldfState, asked: Reason) -> Reason:
         return REASON_SLOWING_DOWN, target, 0.0
     if st.acceleration_request_mps2 > -STILL_MPS2 and speed < target - off:
         return REASON_SPEEDING_UP, target, 0.0
-    return (REASON_LIMIT, 0.0, 0.0) if goes else asked
+    if not goes:
+        return asked
+    aim = profile.learned_mps[int(profile.aim_m[place[0]])]
+    fastest = max(aim, st.set_speed_mps)
+    if st.acceleration_request_mps2 < 0.0 and speed > aim - AWAY_MPS:
+        return REASON_SLOWING_DOWN, aim, 0.0
+    speeds_up = st.acceleration_request_mps2 >= 0.0 and speed < fastest - NEAR_MPS
+    return (REASON_SPEEDING_UP, fastest, 0.0) if speeds_up else (REASON_LIMIT, 0.0, 0.0)
 
 
 def _does_so(st: PldfState, asked: Reason) -> bool:
