@@ -44,7 +44,11 @@ def drive(phase: str, seed: int, stored: StoredProfile | None) -> Driven:
     behind_lead: set[int] = set()
     counted = pedal = 0
     car.step(STEP_S, lever_resume=1)
+    steps = 0
     while car.s_m < len(limited) - 20.0:
+        steps += 1
+        assert steps < 20_000, f"stands at {car.s_m:.0f} m"
+        resume = int(st.standing and steps % 40 < 5)  # the driver goes on behind a longer stop
         gas = any(a <= car.s_m < b for a, b in GAS)
         was_limited, intervening = st.following_limits, st.intervening
         counted += 1 - was_limited
@@ -52,7 +56,7 @@ def drive(phase: str, seed: int, stored: StoredProfile | None) -> Driven:
         first = int(car.s_m)
         seen = {name: getattr(traffic.record, name) for name in
                 ("lead_present", "lead_gap_m", "lead_speed_mps")}  # fmt: skip
-        car.step(STEP_S, lever_resume=0, driver_gas_pedal=0.25 * gas, **seen)
+        car.step(STEP_S, lever_resume=resume, driver_gas_pedal=0.25 * gas, **seen)
         traffic.record.vehicle_s_m, traffic.record.vehicle_speed_mps = car.s_m, car.speed_mps
         traffic.step(STEP_S)
         if was_limited:
