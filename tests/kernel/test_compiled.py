@@ -220,6 +220,7 @@ def test_replaying_a_recording_is_the_same_to_the_bit() -> None:
         random.choice([0.0, 2.0], count),
         random.integers(0, 2, count).astype(float),
         random.integers(0, 2, count).astype(float),
+        random.integers(0, 2, count).astype(float),
         random.choice([0.0, 15.0], count),
     ]
     for functions, native in ((plain(), False), (kernel(), True)):

@@ -21,6 +21,7 @@ class Samples(NamedTuple):
     set_speed_mps: Floats
     set_speed_offset_mps: Floats
     eligible: Floats
+    teach_pause: Floats
     following_limits: Floats
     limit_override_mps: Floats
 
@@ -36,6 +37,7 @@ def replay(st: PldfState, route: RouteArrays, trace: TraceArrays, samples: Sampl
         st.set_speed_mps = samples.set_speed_mps[k]
         st.set_speed_offset_mps = samples.set_speed_offset_mps[k]
         st.eligible = int(samples.eligible[k])
+        st.teach_pause = int(samples.teach_pause[k])
         st.following_limits = int(samples.following_limits[k])
         st.limit_override_mps = samples.limit_override_mps[k]
         notice_temporary_limit(st, route)

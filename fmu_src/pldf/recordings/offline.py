@@ -81,7 +81,7 @@ def learn_from(
     stored = follow_known(function, route, stored)
     whole = completed(recording, function, file)
     columns = whole.columns
-    absent = np.zeros(len(recording))  # no lead car limited, no temporary limit
+    absent = np.zeros(len(recording))  # not paused, no lead car limited, no temporary limit
     samples = Samples(
         *(view(np.ascontiguousarray(columns.get(name, absent))) for name in Samples._fields)
     )
@@ -93,7 +93,8 @@ def learn_from(
             f"not advance on {route.name} (0 to {route.length_m:g} m)"
         )
     iteration = function.learn("learn")
-    notes = (*whole.notes, *_contradicted(recording, function, file, named))
+    doubts = (*_contradicted(recording, function, file, named), *_last_words(recording, file))
+    notes = (*whole.notes, *doubts)
     return Learned(function, stored.with_iteration(iteration), iteration, notes)
 
 
@@ -157,6 +158,19 @@ def _contradicted(
             "an offset that had been learned before would count as set by the driver",
             "name what the drive followed with --profile-in",
         )  # fmt: skip
+
+
+def _last_words(recording: Recording, file: str) -> Iterator[Finding]:
+    """Yield that forgetting and undoing, as the function does it at once, is not repeated."""
+    for column, word in (("teach_forget_here", "forget"), ("teach_undo", "undo")):
+        pressed = recording["s_m"][recording[column] > 0.0] if column in recording else ()
+        if len(pressed):
+            yield Finding(
+                "warning", file, 0, column,
+                f"pressed at {pressed[0]:.0f} m, which is not repeated",
+                "what the driver took back then is learned, and kept, here",
+                f"the function keeps it in the profile itself; in a file: pldf profiles {word}",
+            )  # fmt: skip
 
 
 def explain(learned: Learned) -> dict[str, Any]:
