@@ -163,7 +163,7 @@ def _contradicted(
 def _last_words(recording: Recording, file: str) -> Iterator[Finding]:
     """Yield that forgetting and undoing, as the function does it at once, is not repeated."""
     for column, word in (("teach_forget_here", "forget"), ("teach_undo", "undo")):
-        pressed = recording["s_m"][recording[column] > 0.0] if column in recording else ()
+        pressed = recording["s_m"][recording[column] > 0.0] if column in recording else np.zeros(0)
         if len(pressed):
             yield Finding(
                 "warning", file, 0, column,
