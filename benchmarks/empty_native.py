@@ -10,7 +10,8 @@ from typing import Final
 from pldf.build.fmus import RUNTIME
 from pldf.build.native.driving_function import MODEL
 from pldf.build.native.linking import HEADERS, link, zig
-from pldf.build.native.table import header, source
+from pldf.build.native.table import source
+from pldf.build.native.table_header import header
 
 from vehicle_models.native import DRIVER, VEHICLE
 

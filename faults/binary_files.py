@@ -149,7 +149,8 @@ def _drive() -> Iterator[dict[str, float]]:
 
 
 def _outputs(slave: Slave) -> list[float]:
-    return [float(value) for value in slave.outputs().values()]
+    outputs = slave.outputs().values()
+    return [float(value) for value in outputs if not isinstance(value, str)]
 
 
 def _judged(python: Rows, native: Rows, stores: list[Path]) -> Counts:

@@ -83,7 +83,8 @@ def test_start_values_stand_where_they_must_and_nowhere_else(archives: Archives)
         assert v.get("initial") == initial.get(v["causality"]), v["name"]
     texts = archives.xml3.findall("ModelVariables/String")
     assert texts
-    assert all("start" not in text.attrib and len(text) == 1 for text in texts)
+    assert not any("start" in text.attrib for text in texts)
+    assert all(len(text) == (text.attrib["causality"] == "parameter") for text in texts)
 
 
 def test_outputs_are_the_initial_unknowns(archives: Archives) -> None:

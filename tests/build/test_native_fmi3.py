@@ -56,7 +56,13 @@ def inputs_at(host: Host, k: int) -> dict[str, Any]:
 
 
 def bits(values: dict[str, Any]) -> dict[str, Any]:
-    return {n: v.hex() if isinstance(v, float) else int(v) for n, v in values.items()}
+    return {n: _bits(value) for n, value in values.items()}
+
+
+def _bits(value: Any) -> Any:
+    if isinstance(value, str):
+        return value
+    return value.hex() if isinstance(value, float) else int(value)
 
 
 def test_every_output_of_every_step_equals_that_of_fmi2(pair: tuple[Host, Host3]) -> None:
@@ -99,7 +105,7 @@ def test_fmpy_simulates_both_archives_alike(native_folder: Path) -> None:
             simulate_fmu(str(folder / f"{name}.fmu"), stop_time=2.005)
             for folder in (native_folder, native_folder / "fmi3")
         )
-        assert first.dtype.names == second.dtype.names
+        assert set(first.dtype.names) == set(second.dtype.names)  # fmpy orders them by type
         assert len(first) > 200
         for column in first.dtype.names:  # an enumeration's numbers have another size
             assert first[column].tolist() == second[column].tolist()

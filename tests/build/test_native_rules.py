@@ -118,7 +118,7 @@ def test_exports_must_be_the_functions_of_fmi(tmp_path: Path, target: str) -> No
     ("target", "name", "option"),
     [
         ("x86_64-linux", "PyErr_Clear", "-g0"),  # from nowhere
-        ("x86_64-linux", "dlsym", "-ldl"),
+        ("x86_64-linux", "pthread_create", "-lpthread"),
         ("x86_64-windows", "MessageBeep", "-luser32"),
     ],
 )
@@ -178,10 +178,10 @@ def test_the_functions_of_both_versions_are_known() -> None:
 
 FLOORS = (
     ("os", "disk", "model", "text"),
-    ("importer", "profile", "profile_history", "prepared"),
+    ("importer", "profile", "profile_history", "profile_undo", "prepared"),
     ("store", "older"),
-    ("run", "learning", "outcome"),
-    ("session", "values", "state"),
+    ("run", "learning", "outcome", "recording", "words"),
+    ("session", "cluster", "values", "state"),
     ("calls", "fmi2", "fmi3"),
 )
 

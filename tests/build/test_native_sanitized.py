@@ -25,7 +25,8 @@ if sys.platform != "linux":
     pytest.skip("the sanitizers of gcc on Linux", allow_module_level=True)
 
 from pldf.build.native.objects import compile_objects
-from pldf.build.native.table import header, source
+from pldf.build.native.table import source
+from pldf.build.native.table_header import header
 from pldf.cosim.prepared import write_prepared_route
 
 HERE = PLATFORMS["linux64"]

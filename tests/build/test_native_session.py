@@ -22,6 +22,7 @@ from pldf.roads import packed_route
 
 pytest.importorskip("ziglang", reason="needs the extra: pip install -e .[native]")
 
+from pldf.build.native.driving_function import MODEL
 from pldf.cosim.prepared import write_prepared_route
 
 OK, WARNING, ERROR = 0, 1, 3
@@ -161,7 +162,8 @@ def test_a_state_from_before_a_drive_brings_its_own_store(
 # Serialized states
 
 HEAD = {"size": 40, "nodes": 48, "rows": 56, "phase": 64, "ready": 72, "stale": 80, "told": 88}
-TIME, TEXTS = 96, 104
+TIME = HEAD["told"] + 8 * len(MODEL.watches)
+TEXTS = TIME + 8
 CELLS = [field.name for field in fields(PldfState)]
 
 

@@ -101,7 +101,9 @@ def test_every_input_is_fed_by_the_output_of_its_name(fmus: dict[str, Fmu]) -> N
     inputs = {f"{part}.{s.name}" for part, fmu in fmus.items() for s in fmu.named("input")}
     asked = {"eligible", "limit.override_mps"}
     outside = {"lead.present", "lead.gap_m", "lead.speed_mps", "vehicle.x_m", "vehicle.y_m"}
-    assert inputs - set(found) == {f"pldf.{name}" for name in asked | outside}
+    ahead = {"lead.present", "lead.gap_m", "lead.speed_mps"}  # by LeadVehicle, in traffic
+    wanted = {f"pldf.{name}" for name in asked | outside} | {f"driver.{name}" for name in ahead}
+    assert inputs - set(found) == wanted
 
 
 def test_ends_that_differ_in_unit_are_not_connected(fmus: dict[str, Fmu]) -> None:

@@ -222,7 +222,7 @@ def test_documentation_lists_every_variable_and_escapes_text():
     assert "Gain &lt;1&gt;" in page
     assert "<p>Second &lt;part&gt;.</p>" in page
     assert "1 (3.6 km/h)" in page
-    assert "0 RED, 1 GREEN" in page
+    assert "0\N{NO-BREAK SPACE}RED, 1\N{NO-BREAK SPACE}GREEN" in page
 
 
 def test_guid_follows_every_byte():

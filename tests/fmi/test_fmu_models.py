@@ -1,4 +1,4 @@
-"""Our three FMUs, through fmpy."""
+"""Our FMUs, through fmpy."""
 
 from __future__ import annotations
 
@@ -10,6 +10,10 @@ import pytest
 from fmi_host import Host
 from pldf.build import fmus as fmu_build
 from pushed_cart import EXAMPLE, FATAL, OK
+
+
+def numbers(outputs):
+    return [value for value in outputs.values() if not isinstance(value, str)]
 
 
 @pytest.mark.parametrize("name", fmu_build.FMUS)
@@ -26,7 +30,7 @@ def test_our_fmus_run_and_start_anew(fmu_folder, name, monkeypatch, tmp_path):
     assert slave.run(0.0, 50) == run
     assert slave.restore(state) == OK
     slave.free()
-    assert all(math.isfinite(v) for o in (first, *run) for v in o.values())
+    assert all(math.isfinite(v) for o in (first, *run) for v in numbers(o))
 
 
 def drive_on(slave, first: int, steps: int) -> list:
@@ -85,7 +89,7 @@ def test_inputs_that_are_no_numbers_never_come_out(fmu_folder, name, value):
         slave.set(**{bad: value})
         between = slave.outputs()
         after = slave.run(time, 2)
-        assert all(math.isfinite(v) for o in (between, *after) for v in o.values()), bad
+        assert all(math.isfinite(v) for o in (between, *after) for v in numbers(o)), bad
         slave.set(**{bad: 0.0})
         slave.run(time + 0.02, 2)
         time += 0.04

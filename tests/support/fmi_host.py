@@ -79,7 +79,8 @@ class Slave:
         """Return the value of a variable."""
         variable = self.variables[name]
         getter = getattr(self.fmu, f"get{self.SUFFIX.get(variable.type, variable.type)}")
-        return getter([variable.valueReference])[0]
+        value = getter([variable.valueReference])[0]
+        return value.decode() if isinstance(value, bytes) else value
 
     def outputs(self) -> dict[str, Any]:
         """Return every output."""

@@ -68,7 +68,7 @@ def unnoted(found: Iterator[tuple[str, str]], changelog: str) -> list[str]:
     ]
 
 
-@pytest.mark.parametrize("name", FMUS)
+@pytest.mark.parametrize("name", [name for name in FMUS if name in PROMISED])
 @pytest.mark.parametrize("archive", ARCHIVES)
 def test_variables_are_those_of_the_last_release(
     name: str, archive: str, fmu_folder: Path, native_folder: Path

@@ -70,6 +70,7 @@ def drive_step(
         hear_driver(st, route, profile, trace)
     else:  # no sample either: what is not known is neither recorded nor a place
         st.mode = next_mode(st.mode, FAIL)
+    st.stepped = 1
     st.sampled_s_m = st.vehicle_s_m
     st.sampled_x_m = st.vehicle_x_m
     st.sampled_y_m = st.vehicle_y_m
@@ -110,7 +111,7 @@ def is_placed_anew(st: PldfState) -> bool:
     As long as they are not, they are a step old: the car is ``ahead_m`` behind them, whatever else
     was set since.
     """
-    if st.time_ns == 0:
+    if st.stepped == 0:
         return True
     if st.localization == XY:
         return st.vehicle_x_m != st.sampled_x_m or st.vehicle_y_m != st.sampled_y_m

@@ -161,6 +161,7 @@ class Memory:
     time_ns: int = nanoseconds()
     s_m: float = 0.0
     ahead_m: float = 0.0  # travel from the last sample to the end of the step
+    stepped: int = flag()  # not before the first step, which may be too short to count as time
     sampled_s_m: float = anything()  # the position inputs of the last step
     sampled_x_m: float = anything()
     sampled_y_m: float = anything()

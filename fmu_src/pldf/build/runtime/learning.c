@@ -71,6 +71,7 @@ void learning_follow(const Importer *importer, State *state, Run *run) {
     p->driver = state->record[l->driver_id].integer;
     p->nodes = state->nodes;
     state->record[l->profile_status].integer = load_profile(importer, state, run);
+    if (p->bytes) run->history = calloc((size_t)p->count + 1, sizeof *run->history);
     words_follow(state, run);
     run_call(model.refresh, state, run, 0.0);
 }

@@ -29,9 +29,16 @@ bool profile_same_history(const Profile *a, const Profile *b);
 bool profile_add(Profile *profile, const Lesson *lesson, char *why);
 /* Points to the values of each column behind iteration 0, 1, ...; NULL: all are zero. */
 void profile_past(const Profile *profile, int64_t iteration, const double **columns);
-/* The newest iteration that taught and is in force, 0: there is none. `undone`, from 0 to the number
-   of iterations, says which were undone since; it is changed. */
-int64_t profile_lesson_in_force(const Profile *profile, bool *undone);
+
+typedef struct { /* what an iteration did to the history */
+    int kind;
+    int64_t named; /* which iteration it undoes or copies; -1: the note does not say */
+    bool taught, undone;
+} HistoryStep;
+
+/* The newest iteration that taught and is in force, 0: there is none. `steps` has one per iteration, from
+   0 on; `undone` says which were undone since the file was written, the rest is filled in. */
+int64_t profile_lesson_in_force(const Profile *profile, HistoryStep *steps);
 
 /* Between profile.c, which reads, and profile_history.c */
 

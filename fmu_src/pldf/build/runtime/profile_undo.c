@@ -1,5 +1,4 @@
 /* Which lessons of a profile are in force, as pldf/profiles/lessons.py; what an older iteration held. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "profile.h"
@@ -38,14 +37,8 @@ void profile_past(const Profile *p, int64_t iteration, const double **columns) {
 
 enum { LESSON, UNDO, ROLLBACK, OTHER };
 typedef struct {
-    int kind;
-    int64_t named; /* which iteration it undoes or copies; -1: the note does not say */
-    bool taught;
-} Step;
-
-typedef struct {
     const Profile *p;
-    Step *entries; /* from 1 */
+    HistoryStep *steps;
     const double *columns[PROFILE_COLUMNS], *offset_before;
     int64_t number; /* of the iteration whose blocks are being looked at */
 } Lessons;
@@ -78,7 +71,7 @@ static void judge(Lessons *l) {
     for (int64_t i = 0; i < l->p->nodes && !taught; i++)
         taught = value_at(drive, i) == (double)l->number ||
                  value_at(offset, i) != value_at(l->offset_before, i);
-    l->entries[l->number].taught = taught;
+    l->steps[l->number].taught = taught;
     l->offset_before = offset;
 }
 
@@ -89,31 +82,27 @@ static bool look(void *context, const IterationLine *line, int column, int64_t b
     l->number = line->number;
     bool lesson = strcmp(line->kind, "drive") == 0 || strcmp(line->kind, "learn") == 0;
     bool undo = strcmp(line->kind, "undo") == 0, rollback = strcmp(line->kind, "rollback") == 0;
-    l->entries[l->number].kind = lesson ? LESSON : undo ? UNDO : rollback ? ROLLBACK : OTHER;
-    l->entries[l->number].named = number_named(line);
+    l->steps[l->number].kind = lesson ? LESSON : undo ? UNDO : rollback ? ROLLBACK : OTHER;
+    l->steps[l->number].named = number_named(line);
     return true;
 }
 
 /* Along the history that is in force, from its end. */
-static int64_t newest(const Step *entries, int64_t count, bool *undone) {
+static int64_t newest(HistoryStep *steps, int64_t count) {
     for (int64_t at = count; at > 0;) {
-        const Step *e = &entries[at];
-        if (e->kind == UNDO && e->named >= 0 && e->named <= count) undone[e->named] = true;
-        if (e->kind == LESSON && e->taught && !undone[at]) return at;
+        const HistoryStep *e = &steps[at];
+        if (e->kind == UNDO && e->named >= 0 && e->named <= count) steps[e->named].undone = true;
+        if (e->kind == LESSON && e->taught && !e->undone) return at;
         at = e->kind == ROLLBACK && e->named >= 0 && e->named < at ? e->named : at - 1;
     }
     return 0;
 }
 
-int64_t profile_lesson_in_force(const Profile *p, bool *undone) {
-    Lessons lessons = {.p = p};
+int64_t profile_lesson_in_force(const Profile *p, HistoryStep *steps) {
+    Lessons lessons = {.p = p, .steps = steps};
     if (!p->bytes || !p->count) return 0;
-    lessons.entries = calloc((size_t)p->count + 1, sizeof *lessons.entries);
-    if (!lessons.entries) return 0;
     begin(p, lessons.columns);
     profile_walk(p, look, &lessons);
     judge(&lessons);
-    int64_t number = newest(lessons.entries, p->count, undone);
-    free(lessons.entries);
-    return number;
+    return newest(steps, p->count);
 }

@@ -9,6 +9,7 @@
 void run_release(Run *run) {
     free(run->block);
     free(run->marks);
+    free(run->history);
     profile_free(&run->stored);
     memset(run, 0, sizeof *run);
 }

@@ -17,6 +17,7 @@ typedef struct { /* what is saved and restored, followed by the kept columns */
 typedef struct { /* what follows from the parameters */
     double *block;
     Profile stored;
+    HistoryStep *history; /* of the stored profile: what an undo needs, so that no step allocates */
     char *marks; /* of the route, a line each (prepared.h); NULL: there are none */
     char folder[PATH_SIZE]; /* of profiles; empty: nothing is persisted */
     char recordings[PATH_SIZE]; /* folder of recordings; empty: none is written */

@@ -1,7 +1,6 @@
 /* The driver's words, as pldf/driver_words.py: answered behind the step that heard them, kept as
    iterations at the end. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "run.h"
@@ -41,13 +40,12 @@ static int64_t lesson_to_undo(const State *state, const Run *run) {
     const double *kind = words_of(state, run, TRACE_WORD_KIND), *at = words_of(state, run, TRACE_WORD_AT);
     int64_t count = run->stored.bytes ? run->stored.count : 0, words = state->record[l->words].integer;
     if (!state->record[l->apply_learned].integer || words >= state->nodes) return 0;
-    bool *undone = calloc((size_t)count + 1, sizeof *undone);
-    if (!undone) return 0;
+    if (!count || !run->history) return 0;
+    memset(run->history, 0, (size_t)(count + 1) * sizeof *run->history);
     for (int64_t k = 0; k < words; k++)
-        if (kind[k] == WORD_UNDO && at[k] > 0.0 && at[k] <= (double)count) undone[(int64_t)at[k]] = true;
-    int64_t number = profile_lesson_in_force(&run->stored, undone);
-    free(undone);
-    return number;
+        if (kind[k] == WORD_UNDO && at[k] > 0.0 && at[k] <= (double)count)
+            run->history[(int64_t)at[k]].undone = true;
+    return profile_lesson_in_force(&run->stored, run->history);
 }
 
 /* Takes iteration `number` back; 0: there is nothing to take back. */
