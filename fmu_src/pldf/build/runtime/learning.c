@@ -1,5 +1,6 @@
 /* What only a model that learns has: the stored profile, before a drive and after it. */
 #include <math.h>
+#include <stdlib.h>
 #include <stdio.h>
 
 #include "run.h"
