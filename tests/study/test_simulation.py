@@ -96,7 +96,10 @@ def test_the_loop_is_wired_as_the_fmus_are(fmus: Mapping[str, Fmu]) -> None:
         tuple(f"{part}.{name.replace('.', '_')}" for part, name in (wire.target, wire.source))
         for wire in connections(fmus)
     }
-    assert assigned == wired
+    # Simulated people never press these; a script's presses are answered by the FMUs alone.
+    words = {wire for wire in wired if wire[0].startswith("pldf.teach_")}
+    assert len(words) == 3
+    assert assigned == wired - words
 
 
 def test_a_drive_is_the_same_whether_it_is_recorded_or_not() -> None:

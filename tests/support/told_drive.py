@@ -112,6 +112,7 @@ _FIELDS = {
     "set_speed_mps": "set_speed_mps",
     "set_speed_offset_mps": "set_speed_offset_mps",
     "eligible": "eligible",
+    "following_limits": "following_limits",
 }
 
 

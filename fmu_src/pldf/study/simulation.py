@@ -199,6 +199,7 @@ class Simulation:
         st["apply_learned"] = phase.apply_learned
         st["learn"] = self.settings.learn if phase.learn else LEARN_OFF
         st["mode"] = STANDBY if self.function.record.main_switch else OFF
+        self.code["begin_cluster"](st[0])
         st["profile_iteration"] = len(stored.iterations)
         return st
 
