@@ -88,7 +88,7 @@ static bool add_lesson(const Importer *importer, State *state, Run *run, Profile
                      state->record[l->apply_learned].integer, "drive",
                      cut ? "drive, last intervention truncated" : "drive",
                      state->record[l->interventions].integer};
-    return profile_add(kept, &lesson, why);
+    return profile_add(kept, run->stored.bytes, &lesson, why);
 }
 
 static Level save(const Importer *importer, const State *state, const Run *run, Profile *kept,

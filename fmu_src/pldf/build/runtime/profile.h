@@ -25,8 +25,8 @@ bool profile_parse(Profile *profile, char *why);
 const double *profile_newest(const Profile *profile, int column);
 bool profile_same_history(const Profile *a, const Profile *b);
 /* Adds an iteration to the profile, whose driver, route and nodes are set; its bytes are then others,
-   in the newest format, and those before are not freed. False, and the reason: it is as it was. */
-bool profile_add(Profile *profile, const Lesson *lesson, char *why);
+   in the newest format, and those before are freed unless they are `stored`. False, and the reason: it is as it was. */
+bool profile_add(Profile *profile, const uint8_t *stored, const Lesson *lesson, char *why);
 /* Points to the values of each column behind iteration 0, 1, ...; NULL: all are zero. */
 void profile_past(const Profile *profile, int64_t iteration, const double **columns);
 

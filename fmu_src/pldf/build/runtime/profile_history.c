@@ -160,7 +160,7 @@ static uint8_t *assemble(const Profile *p, const double *base, const Piece *old,
     return bytes;
 }
 
-bool profile_add(Profile *p, const Lesson *lesson, char *why) {
+bool profile_add(Profile *p, const uint8_t *stored, const Lesson *lesson, char *why) {
     Piece old = {0}, new = {0};
     Profile longer = {0};
     const double *base = p->bytes ? block_of(p, 0) : lesson->base;
@@ -170,6 +170,7 @@ bool profile_add(Profile *p, const Lesson *lesson, char *why) {
     piece_free(&new);
     if (!longer.bytes) return snprintf(why, REASON_SIZE, "not enough memory"), false;
     if (!profile_parse(&longer, why)) return free(longer.bytes), false; /* what cannot be read back */
+    if (p->bytes != stored) free(p->bytes);
     *p = longer;
     return true;
 }

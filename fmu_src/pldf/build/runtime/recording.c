@@ -114,8 +114,9 @@ static bool free_path(const State *state, const char *folder, char *path, char *
     const Learning *l = model.learning;
     char system = state->record[l->apply_learned].integer ? 'B' : 'A';
     for (int number = 1; number < 1000000; number++) {
-        snprintf(path, PATH_SIZE, "%s/P%03lld_%c%d.csv", folder,
-                 (long long)state->record[l->driver_id].integer, system, number);
+        if (snprintf(path, PATH_SIZE, "%s/P%03lld_%c%d.csv", folder,
+                     (long long)state->record[l->driver_id].integer, system, number) >= PATH_SIZE)
+            return snprintf(why, REASON_SIZE, "its path is too long"), false;
         if (os_entry(path) == NO_ENTRY) return true;
     }
     snprintf(why, REASON_SIZE, "no name is free");

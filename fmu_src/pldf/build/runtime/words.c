@@ -99,7 +99,7 @@ static bool keep(const State *state, const Run *run, Profile *kept, const char *
     snprintf(note, sizeof note, format, (int)at);
     Lesson lesson = {columns_of(state, run, l->base_column), columns_of(state, run, l->learned_column),
                      true, kind, note, 0};
-    return profile_add(kept, &lesson, why);
+    return profile_add(kept, run->stored.bytes, &lesson, why);
 }
 
 /* Says one word again and adds its iteration. */
