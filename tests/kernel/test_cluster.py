@@ -96,7 +96,7 @@ def test_a_curve_is_the_reason_though_a_set_speed_is_set() -> None:
     assert said[-1].text == "62 for the curve"
     assert said[-1].reason == "CURVE"
     assert car.speed_mps / KMH == pytest.approx(62.0, abs=1.0)
-    assert "105, set by you" in texts(said)
+    assert "105: set by you" in texts(said)
 
 
 def test_above_the_limit_it_slows_down_and_says_so() -> None:
@@ -144,7 +144,7 @@ def test_a_learned_set_speed_is_told_as_one() -> None:
     car.tip("lever_up_long")
     car.run(60.0)
     said = listen(taught(route, car.made), 1500.0)
-    assert said[-1].text == "105 at limit 100: your set speed, learned"
+    assert said[-1].text == "105 at limit 100: your learned set speed"
     assert not any("you drove" in text for text in texts(said))
 
 
@@ -161,7 +161,7 @@ def test_a_new_set_speed_is_said_at_once() -> None:
     for kmh in (101, 102, 103):
         car.tip("lever_up")
         car.made.say()
-        assert car.made.texts.hmi_text == f"{kmh}, set by you"
+        assert car.made.texts.hmi_text == f"{kmh}: set by you"
 
 
 def test_every_mode_has_its_sentence() -> None:
@@ -206,10 +206,10 @@ def test_a_sentence_stays_for_a_second_unless_it_is_false() -> None:
 def test_an_event_waits_and_a_warning_does_not() -> None:
     car = driving(road(3000.0), BASE)
     car.run(1.5)
-    car.step(STEP_S, lever_up=1)  # "101, set by you" begins now
+    car.step(STEP_S, lever_up=1)  # "101: set by you" begins now
     car.step(STEP_S, lever_up=0, teach_pause=1)
     car.made.say()
-    assert car.made.texts.hmi_text == "101, set by you"
+    assert car.made.texts.hmi_text == "101: set by you"
     assert car.made.record.hmi_event != 0
     car.run(1.1)
     car.made.say()

@@ -65,13 +65,13 @@ REASONS: Final = (
     ),
     Sentence(
         "LEARNED_OFFSET", 11, "learned-set-speed",
-        "{speed} at limit {limit}: your set speed, learned",
-        "{speed} bei Tempolimit {limit}: Ihr Setztempo, gelernt",
+        "{speed} at limit {limit}: your learned set speed",
+        "{speed} bei Tempolimit {limit}: Ihr gelerntes Setztempo",
         "the car drives at the set speed that the lever taught",
     ),
     Sentence(
         "MANUAL_SET", 10, "set-speed",
-        "{speed}, set by you", "{speed}, von Ihnen gesetzt",
+        "{speed}: set by you", "{speed}: von Ihnen gesetzt",
         "the set speed of the lever holds",
     ),
     Sentence(
