@@ -19,7 +19,7 @@ from pldf.kernel.codes import ACTIVE, STANDBY
 from pldf.kernel.state import PldfState
 from pldf.roads import Route, route_arrays
 
-from faults import watched_follow
+from faults import watched_drive, watched_follow
 from faults.experiment import Counts, Experiment, Progress
 from faults.hard_roads import hard_road
 from faults.watched_follow import Cars, Watched
@@ -54,7 +54,7 @@ def machine_code() -> Namespace:
     function = compile_modules(KERNEL_MODULES, inline=True)
     vehicle = compile_modules((vehicle_kernel,), function, inline=True)
     called = {**function, **vehicle}
-    return {**called, **compile_modules((watched_follow,), called, inline=True)}
+    return {**called, **compile_modules((watched_drive, watched_follow), called, inline=True)}
 
 
 @cache

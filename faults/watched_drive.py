@@ -54,27 +54,33 @@ def watch_drive(
     profile, trace = arrays
     end_m = len(route.limit_mps) - 2.0
     vehicle_start(vehicle, route.grade)
-    _show(vehicle, pldf)
+    show_car(vehicle, pldf)
     refresh(pldf, route, profile)
     for k in range(len(seen.s_m)):
         if vehicle.s_m >= end_m:
             return k
         _act(pldf, lesson, vehicle.s_m, vehicle.speed_mps, k)
         _write(vehicle, pldf, seen, k)
-        _show(vehicle, pldf)
-        vehicle.acceleration_request_mps2 = pldf.acceleration_request_mps2
-        vehicle.function_active = pldf.function_active
-        vehicle.driver_gas_pedal = pldf.driver_gas_pedal
-        vehicle.driver_brake_pedal = pldf.driver_brake_pedal
+        show_car(vehicle, pldf)
+        move_car(vehicle, pldf)
         vehicle_step(vehicle, route.grade, step_s)
         drive_step(pldf, route, profile, trace, step_s)
     return len(seen.s_m)
 
 
-def _show(vehicle: VehicleState, pldf: PldfState) -> None:
+def show_car(vehicle: VehicleState, pldf: PldfState) -> None:
+    """Give the function what the vehicle tells."""
     pldf.vehicle_s_m = vehicle.s_m
     pldf.vehicle_speed_mps = vehicle.speed_mps
     pldf.vehicle_acceleration_mps2 = vehicle.acceleration_mps2
+
+
+def move_car(vehicle: VehicleState, pldf: PldfState) -> None:
+    """Give the vehicle what the function requests and the driver presses."""
+    vehicle.acceleration_request_mps2 = pldf.acceleration_request_mps2
+    vehicle.function_active = pldf.function_active
+    vehicle.driver_gas_pedal = pldf.driver_gas_pedal
+    vehicle.driver_brake_pedal = pldf.driver_brake_pedal
 
 
 def _act(pldf: PldfState, lesson: Lesson, s_m: float, speed_mps: float, k: int) -> None:

@@ -13,6 +13,7 @@ from pldf.kernel.codes import STANDBY
 from pldf.kernel.drive import drive_step, refresh
 from pldf.kernel.state import PldfState
 
+from faults.watched_drive import move_car, show_car
 from vehicle_models.vehicle_kernel import vehicle_start, vehicle_step
 from vehicle_models.vehicle_state import VehicleState
 
@@ -58,7 +59,7 @@ def watch_follow(
     gap = 0.0
     not_a_number = 0.0 * 1e308 * 1e308 * 1e308
     vehicle_start(vehicle, route.grade)
-    _show_car(vehicle, pldf)
+    show_car(vehicle, pldf)
     refresh(pldf, route, profile)
     for k in range(len(watched.s_m)):
         if vehicle.s_m >= end_m:
@@ -67,14 +68,12 @@ def watch_follow(
             gap = cars.new_gap_m[k]
         _note_before(vehicle, pldf, watched, k)
         watched.gap_m[k] = gap if cars.present[k] != 0.0 else 0.0
-        _show_car(vehicle, pldf)
+        show_car(vehicle, pldf)
         pldf.lead_present = 1 if cars.present[k] != 0.0 else 0
         pldf.lead_gap_m = gap if cars.present[k] != 0.0 else not_a_number
         pldf.lead_speed_mps = cars.speed_mps[k] if cars.present[k] != 0.0 else not_a_number
         _move_driver(pldf, cars, k)
-        vehicle.acceleration_request_mps2 = pldf.acceleration_request_mps2
-        vehicle.function_active = pldf.function_active
-        vehicle.driver_gas_pedal = pldf.driver_gas_pedal
+        move_car(vehicle, pldf)
         before_m = vehicle.s_m
         vehicle_step(vehicle, route.grade, step_s)
         drive_step(pldf, route, profile, trace, step_s)
@@ -86,12 +85,6 @@ def watch_follow(
         after = cars.speed_mps[min(k + 1, len(cars.speed_mps) - 1)]
         gap += 0.5 * (cars.speed_mps[k] + after) * step_s - (vehicle.s_m - before_m)
     return len(watched.s_m)
-
-
-def _show_car(vehicle: VehicleState, pldf: PldfState) -> None:
-    pldf.vehicle_s_m = vehicle.s_m
-    pldf.vehicle_speed_mps = vehicle.speed_mps
-    pldf.vehicle_acceleration_mps2 = vehicle.acceleration_mps2
 
 
 def _move_driver(pldf: PldfState, cars: Cars, k: int) -> None:

@@ -3,17 +3,37 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import cast
+from typing import Final, cast
 
 from pldf.instance import Arrays, Instance, views, zeros
 from pldf.kernel.arrays import Work
 from pldf.roads import chosen_route, route_arrays
 
+from . import (
+    ahead_kernel,
+    chance,
+    clock,
+    driver_kernel,
+    pedal_kernel,
+    script_kernel,
+    wish_kernel,
+)
 from .driver_kernel import driver_start, driver_step
 from .driver_script import packed_script, read_script, script_arrays
 from .driver_state import PREFERENCE, SCRIPT, DriverState, DriverTexts
 from .script_kernel import ScriptArrays
 from .wish_kernel import WishArrays, prepare_wish
+
+# What is compiled of the driver, beside what it uses of the driving function's kernel.
+KERNELS: Final = (
+    ahead_kernel,
+    chance,
+    clock,
+    driver_kernel,
+    pedal_kernel,
+    script_kernel,
+    wish_kernel,
+)
 
 INVALID_INPUT = (
     "an input is not a finite number: pedals and lever are released until it is"

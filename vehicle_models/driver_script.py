@@ -83,10 +83,15 @@ class Script(list[Event]):
 
 def packed_script(script_id: int) -> Path:
     """Return the file of a packed script; ModelError lists the known ones."""
-    if not 0 <= script_id < len(PACKED):
-        known = ", ".join(f"{i} ({name})" for i, name in enumerate(PACKED))
-        raise ModelError(f"script_id {script_id} is unknown; packed scripts are {known}")
-    return SCRIPTS / PACKED[script_id]
+    return packed_file(SCRIPTS, PACKED, script_id, "scripts")
+
+
+def packed_file(folder: Path, names: tuple[str, ...], script_id: int, called: str) -> Path:
+    """Return the file with this number; ModelError lists the known ones as what they are called."""
+    if not 0 <= script_id < len(names):
+        known = ", ".join(f"{i} ({name})" for i, name in enumerate(names))
+        raise ModelError(f"script_id {script_id} is unknown; packed {called} are {known}")
+    return folder / names[script_id]
 
 
 def read_script(path: Path) -> Script:

@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
-from pldf.errors import ModelError
 from pldf.files.tables import Column, Fault, Format, Table, read_table
 from pldf.findings import Finding
 
-from .driver_script import UNITS
+from .driver_script import UNITS, packed_file
 from .lead_motion import USUAL_MPS2
 from .lead_script_kernel import APPEAR, LEAVE, LOST, SEEN, SPEED, LeadScriptArrays
 
@@ -61,10 +60,7 @@ class TrafficScript(list[LeadEvent]):
 
 def packed_traffic(script_id: int) -> Path:
     """Return the file of a packed traffic script; ModelError lists the known ones."""
-    if not 0 <= script_id < len(PACKED_TRAFFIC):
-        known = ", ".join(f"{i} ({name})" for i, name in enumerate(PACKED_TRAFFIC))
-        raise ModelError(f"script_id {script_id} is unknown; packed traffic scripts are {known}")
-    return TRAFFIC_SCRIPTS / PACKED_TRAFFIC[script_id]
+    return packed_file(TRAFFIC_SCRIPTS, PACKED_TRAFFIC, script_id, "traffic scripts")
 
 
 def read_traffic(path: Path) -> TrafficScript:

@@ -15,20 +15,16 @@ from pldf.kernel import interpolation, planner, substeps
 from pldf.kernel.arrays import RouteArrays, Work
 
 from . import (
-    ahead_kernel,
     chance,
     clock,
-    driver_kernel,
     lead_kernel,
     lead_motion,
     lead_script_kernel,
-    pedal_kernel,
-    script_kernel,
     traffic_kernel,
     vehicle_kernel,
-    wish_kernel,
 )
 from .driver import INVALID_INPUT as DRIVER_INPUT
+from .driver import KERNELS
 from .driver_kernel import driver_start, driver_step
 from .driver_script import PACKED, packed_script, read_script, script_arrays
 from .driver_state import PREFERENCE, SCRIPT, DriverState, DriverTexts
@@ -99,18 +95,7 @@ DRIVER: Final = NativeModel(
     about="Driver that follows a script or a hidden wish",
     record=DriverState,
     texts=DriverTexts,
-    modules=(
-        ahead_kernel,
-        chance,
-        clock,
-        driver_kernel,
-        pedal_kernel,
-        script_kernel,
-        wish_kernel,
-        interpolation,
-        substeps,
-        planner,
-    ),
+    modules=(*KERNELS, interpolation, substeps, planner),
     entries={"start": _driver_start, "step": _driver_step},
     groups=(WishArrays, RouteArrays, Work),
     kept=1,

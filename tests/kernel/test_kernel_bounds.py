@@ -19,9 +19,9 @@ from pldf.kernel.arrays import NextArrays, ProfileArrays, RouteArrays, TraceArra
 from pldf.kernel.signals import signals_of
 from pldf.kernel.state import PldfState
 from pldf.roads import Route, packed_route, route_arrays
-from pldf.study.simulation import DRIVER_MODULES
 
 from vehicle_models import vehicle_kernel
+from vehicle_models.driver import KERNELS
 from vehicle_models.driver_script import packed_script, read_script, script_arrays
 from vehicle_models.driver_state import PREFERENCE, SCRIPT, DriverState
 from vehicle_models.script_kernel import ScriptArrays
@@ -40,7 +40,7 @@ def checked() -> Iterator[Namespace]:
         patch.setitem(compiled.OPTIONS, "boundscheck", True)
         function = compile_modules(compiled.KERNEL_MODULES)
         vehicle = compile_modules((vehicle_kernel,), function)
-        yield {**function, **vehicle, **compile_modules(DRIVER_MODULES, function)}
+        yield {**function, **vehicle, **compile_modules(KERNELS, function)}
 
 
 class Senseless:

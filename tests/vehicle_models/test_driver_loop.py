@@ -18,23 +18,12 @@ from pldf.kernel import interpolation, planner, substeps
 from pldf.kernel.arrays import RouteArrays, Work
 from pldf.kernel.codes import ACTIVE, FAULT, GAS_OVERRIDE, LEARN_FAITHFUL, STANDBY
 
-from vehicle_models import (
-    ahead_kernel,
-    chance,
-    clock,
-    driver_kernel,
-    pedal_kernel,
-    script_kernel,
-    wish_kernel,
-)
-from vehicle_models.driver import ScriptedDriver
+from vehicle_models.driver import KERNELS, ScriptedDriver
+from vehicle_models.script_kernel import ScriptArrays
 from vehicle_models.vehicle import LongitudinalVehicle
 from vehicle_models.wish_kernel import WishArrays
 
-MODULES = (
-    ahead_kernel, chance, clock, interpolation, substeps, planner,
-    wish_kernel, script_kernel, pedal_kernel, driver_kernel,
-)  # fmt: skip
+MODULES = (*KERNELS, interpolation, substeps, planner)
 SEEN = ("mode", "target_speed_mps", "set_speed_mps", "limit_mps")
 # The wish of a driver who wants exactly what the driving function does by default.
 LIKE_THE_FUNCTION: dict[str, float] = {
@@ -183,7 +172,7 @@ def test_compiled_kernel_equals_cpython_to_the_bit() -> None:
     for ours, theirs in zip(fresh.arrays[:3], wish, strict=True):
         assert np.array_equal(ours, np.asarray(theirs))
     packed = pack(fresh.record)
-    blank = script_kernel.ScriptArrays(*(np.array(a) for a in plain.arrays[3:]))
+    blank = ScriptArrays(*(np.array(a) for a in plain.arrays[3:]))
     rng, twin = np.random.default_rng(3), replace(fresh.record)
     for k in range(2000):
         if k % 40 == 0:
@@ -208,7 +197,7 @@ def test_compiled_script_equals_cpython_to_the_bit() -> None:
     someone = driver(kind=1)
     packed, twin = pack(someone.record), replace(someone.record)
     wish = WishArrays(*(np.array(a) for a in someone.arrays[:3]))
-    events = script_kernel.ScriptArrays(*(np.array(a) for a in someone.arrays[3:]))
+    events = ScriptArrays(*(np.array(a) for a in someone.arrays[3:]))
     for k in range(4000):
         someone.record.vehicle_s_m = packed[0]["vehicle_s_m"] = float(k)
         someone.step(0.03)

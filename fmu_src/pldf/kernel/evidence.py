@@ -80,15 +80,16 @@ def settle(counter: Counter, i: int, evidence: float) -> None:
     counter[MEAN][i] = 0.0
 
 
-def keep_evidence(profile: ProfileArrays, following: NextArrays) -> None:
-    """Start from the evidence and the pending demonstrations that were known before the drive."""
+def copy_evidence(known: ProfileArrays | NextArrays, kept: ProfileArrays | NextArrays) -> None:
+    """Copy evidence and pending demonstrations of both signs, by pedals and lever."""
     for sign in (FASTER, SLOWER):
-        _copy_counter(of_pedals(profile, sign), of_pedals(following, sign))
-        _copy_counter(of_lever(profile, sign), of_lever(following, sign))
+        for i in range(len(known.evidence_faster)):
+            copy_counter(of_pedals(known, sign), of_pedals(kept, sign), i)
+            copy_counter(of_lever(known, sign), of_lever(kept, sign), i)
 
 
-def _copy_counter(known: Counter, counter: Counter) -> None:
-    for i in range(len(known[EVIDENCE])):
-        counter[EVIDENCE][i] = known[EVIDENCE][i]
-        counter[PENDING][i] = known[PENDING][i]
-        counter[MEAN][i] = known[MEAN][i]
+def copy_counter(known: Counter, kept: Counter, i: int) -> None:
+    """Copy what a counter says of ``i``."""
+    kept[EVIDENCE][i] = known[EVIDENCE][i]
+    kept[PENDING][i] = known[PENDING][i]
+    kept[MEAN][i] = known[MEAN][i]

@@ -20,10 +20,17 @@ from .codes import (
     WORD_UNDO,
 )
 from .drive import update_outputs
-from .evidence import keep_evidence
+from .evidence import FASTER, SLOWER, of_lever, of_pedals, settle
 from .hmi import start_event
 from .interpolation import cell_at, value_at
-from .learning import bound_segments, carry_learned, copy_profile, plan_with_offsets
+from .learning import (
+    bound_segments,
+    carry_learned,
+    copy_lessons,
+    copy_profile,
+    plan_with_offsets,
+)
+from .offsets import begin_of_limit, end_of_limit
 from .preparation import adopt_learned
 from .recorder import note_set_speed
 from .state import PldfState
@@ -48,14 +55,14 @@ def forget_here(
     demonstrations. What this drive recorded of it before is not learned.
     """
     piece = piece_around(st, profile, cell_at(len(profile.learned_mps), st.s_m))
-    limit = limit_around(route, cell_at(len(route.limit_mps), st.s_m))
+    cell = cell_at(len(route.limit_mps), st.s_m)
+    limit = begin_of_limit(route, cell), end_of_limit(route, cell, len(route.limit_mps) - 1)
     room = st.input_state == INPUT_OK and st.words < len(trace.word_kind)
     if not (room and _is_known(profile, piece, limit)):
         start_event(st, EVENT_NOTHING_TO_FORGET)
         update_outputs(st, route, profile)
         return
     copy_profile(profile, following)
-    keep_evidence(profile, following)
     _forget_limit(st, route, profile, work, following, limit)
     _forget_piece(st, following, piece)
     bound_segments(st, route, work, following)
@@ -81,16 +88,6 @@ def piece_around(st: PldfState, profile: ProfileArrays, node: int) -> Ends:
 def _is_off_plan(st: PldfState, profile: ProfileArrays, i: int) -> bool:
     off_mps = profile.learned_mps[i] - profile.planned_mps[i]
     return abs(off_mps) > st.learning_deviation_min_mps
-
-
-def limit_around(route: RouteArrays, cell: int) -> Ends:
-    """Return the run of cells around ``cell`` under one legal limit."""
-    first, last = cell, cell
-    while first > 0 and route.limit_mps[first - 1] == route.limit_mps[cell]:
-        first -= 1
-    while last < len(route.limit_mps) - 1 and route.limit_mps[last + 1] == route.limit_mps[cell]:
-        last += 1
-    return first, last
 
 
 def _is_known(profile: ProfileArrays, piece: Ends, limit: Ends) -> bool:
@@ -119,7 +116,7 @@ def _forget_limit(
     for i in range(limit[0], limit[1] + 1):
         had_offset = had_offset or following.offset_mps[i] != 0.0
         following.offset_mps[i] = 0.0
-        clear_evidence(following, i)
+        _clear_evidence(following, i)
     if had_offset:
         plan_with_offsets(st, route, profile, work, following)
         carry_learned(st, route, profile, following)
@@ -132,23 +129,14 @@ def _forget_piece(st: PldfState, following: NextArrays, piece: Ends) -> None:
         following.intervention[i] = 0.0
         following.lessons[i] = 0.0
         following.bound[i] = float(BOUND_NONE)
-        clear_evidence(following, i)
+        _clear_evidence(following, i)
 
 
-def clear_evidence(following: NextArrays, i: int) -> None:
+def _clear_evidence(following: NextArrays, i: int) -> None:
     """Forget what waits for more evidence at node and cell ``i``, and the evidence."""
-    following.evidence_faster[i] = 0.0
-    following.evidence_slower[i] = 0.0
-    following.pending_faster[i] = 0.0
-    following.pending_slower[i] = 0.0
-    following.pending_faster_mps[i] = 0.0
-    following.pending_slower_mps[i] = 0.0
-    following.offset_evidence_faster[i] = 0.0
-    following.offset_evidence_slower[i] = 0.0
-    following.offset_pending_faster[i] = 0.0
-    following.offset_pending_slower[i] = 0.0
-    following.offset_pending_faster_mps[i] = 0.0
-    following.offset_pending_slower_mps[i] = 0.0
+    for sign in (FASTER, SLOWER):
+        settle(of_pedals(following, sign), i, 0.0)
+        settle(of_lever(following, sign), i, 0.0)
 
 
 def _bar_forgotten(st: PldfState, trace: TraceArrays, piece: Ends, limit: Ends) -> None:
@@ -176,7 +164,7 @@ def _put_in_force(
     st: PldfState, route: RouteArrays, profile: ProfileArrays, work: Work, following: NextArrays
 ) -> None:
     """Drive ``following`` from now on; the request follows as usual, within its limits."""
-    put_back(profile, following)
+    copy_lessons(following, profile)
     adopt_learned(st, route, profile, work)
     if st.manual_set_mps > 0.0:
         st.manual_behind_mps = value_at(profile.learned_mps, st.manual_end_m)
@@ -186,29 +174,6 @@ def _put_in_force(
         st.settling = 1 if error > 0.0 else -1
     update_outputs(st, route, profile)
     note_set_speed(st)
-
-
-def put_back(profile: ProfileArrays, following: NextArrays) -> None:
-    """Copy all that is kept from drive to drive back into ``profile``."""
-    for i in range(len(profile.learned_mps)):
-        profile.learned_mps[i] = following.learned_mps[i]
-        profile.offset_mps[i] = following.offset_mps[i]
-        profile.drive[i] = following.drive[i]
-        profile.intervention[i] = following.intervention[i]
-        profile.lessons[i] = following.lessons[i]
-        profile.bound[i] = following.bound[i]
-        profile.evidence_faster[i] = following.evidence_faster[i]
-        profile.evidence_slower[i] = following.evidence_slower[i]
-        profile.pending_faster[i] = following.pending_faster[i]
-        profile.pending_slower[i] = following.pending_slower[i]
-        profile.pending_faster_mps[i] = following.pending_faster_mps[i]
-        profile.pending_slower_mps[i] = following.pending_slower_mps[i]
-        profile.offset_evidence_faster[i] = following.offset_evidence_faster[i]
-        profile.offset_evidence_slower[i] = following.offset_evidence_slower[i]
-        profile.offset_pending_faster[i] = following.offset_pending_faster[i]
-        profile.offset_pending_slower[i] = following.offset_pending_slower[i]
-        profile.offset_pending_faster_mps[i] = following.offset_pending_faster_mps[i]
-        profile.offset_pending_slower_mps[i] = following.offset_pending_slower_mps[i]
 
 
 def _note_word(st: PldfState, trace: TraceArrays, kind: int, at: float) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from .arrays import NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from .bounds import hard_cap, keep_bounds
 from .codes import BOUND_NONE, OUTCOME_LEARNED
-from .evidence import keep_evidence
+from .evidence import copy_evidence
 from .evidence_places import find_places
 from .lever_evidence import drop_offset_evidence, recognize_offsets, weigh_offsets
 from .lowering import UNMARKED
@@ -40,7 +40,6 @@ def learn_drive(
     b = marks, c = profile before the pedals' lessons, d = their mean, all else scratch.
     """
     copy_profile(profile, following)
-    keep_evidence(profile, following)
     if st.nodes < 2:
         return
     lever = (route, profile, trace, following, work.h)
@@ -88,14 +87,21 @@ def _weigh(st: PldfState, lever: Drive, work: Work) -> None:
 
 def copy_profile(profile: ProfileArrays, following: NextArrays) -> None:
     """Start from the profile driven: what is not learned stays as it is, to the bit."""
-    for i in range(len(profile.learned_mps)):
+    for i in range(len(profile.planned_mps)):
         following.planned_mps[i] = profile.planned_mps[i]
-        following.learned_mps[i] = profile.learned_mps[i]
-        following.offset_mps[i] = profile.offset_mps[i]
-        following.drive[i] = profile.drive[i]
-        following.intervention[i] = profile.intervention[i]
-        following.lessons[i] = profile.lessons[i]
-        following.bound[i] = profile.bound[i]
+    copy_lessons(profile, following)
+
+
+def copy_lessons(known: ProfileArrays | NextArrays, kept: ProfileArrays | NextArrays) -> None:
+    """Copy all that is kept from drive to drive."""
+    for i in range(len(known.learned_mps)):
+        kept.learned_mps[i] = known.learned_mps[i]
+        kept.offset_mps[i] = known.offset_mps[i]
+        kept.drive[i] = known.drive[i]
+        kept.intervention[i] = known.intervention[i]
+        kept.lessons[i] = known.lessons[i]
+        kept.bound[i] = known.bound[i]
+    copy_evidence(known, kept)
 
 
 def _adopted(st: PldfState, following: NextArrays) -> bool:

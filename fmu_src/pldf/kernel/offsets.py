@@ -42,6 +42,14 @@ def _find_series(st: PldfState, drive: Drive) -> None:
         node = end + 1
 
 
+def begin_of_limit(route: RouteArrays, node: int) -> int:
+    """Return the first node from which the limit at ``node`` holds: that of its sign."""
+    begin = node
+    while begin > 0 and route.limit_mps[begin - 1] == route.limit_mps[node]:
+        begin -= 1
+    return begin
+
+
 def end_of_limit(route: RouteArrays, node: int, last: int) -> int:
     """Return the last node, at most ``last``, up to which the limit at ``node`` holds."""
     end = node
@@ -156,9 +164,7 @@ def _first_cell(st: PldfState, drive: Drive, node: int) -> int:
     driver meant the whole limit. A limit whose beginning was not recorded has no sign.
     """
     route, profile, trace, _, _ = drive
-    sign = node
-    while sign > 0 and route.limit_mps[sign - 1] == route.limit_mps[node]:
-        sign -= 1
+    sign = begin_of_limit(route, node)
     moved = max(_place_of(st, trace, node), sign)
     if sign < st.first_node:
         return moved

@@ -14,9 +14,14 @@ from .state import PldfState
 
 def start_drive(st: PldfState, route: RouteArrays, profile: ProfileArrays, work: Work) -> None:
     """Begin a drive with the base profile; the arrays of ``route`` are filled, the rest is zero."""
+    stand_by(st)
+    plan_base(st, route, profile, work)
+
+
+def stand_by(st: PldfState) -> None:
+    """Begin a drive ready to be activated, or switched off."""
     st.mode = STANDBY if st.main_switch != 0 else OFF
     begin_cluster(st)
-    plan_base(st, route, profile, work)
 
 
 def plan_base(st: PldfState, route: RouteArrays, profile: ProfileArrays, work: Work) -> None:

@@ -7,10 +7,18 @@ their values are compared.
 
 from __future__ import annotations
 
-from .arrays import Floats, NextArrays, ProfileArrays, Work
-
-# Evidence, number of pending demonstrations and their mean, of one sign.
-Waiting = tuple[Floats, Floats, Floats]
+from .arrays import NextArrays, ProfileArrays, Work
+from .evidence import (
+    EVIDENCE,
+    FASTER,
+    MEAN,
+    PENDING,
+    SLOWER,
+    Counter,
+    copy_counter,
+    of_lever,
+    of_pedals,
+)
 
 
 def mark_lesson(profile: ProfileArrays, following: NextArrays, work: Work, number: int) -> None:
@@ -26,10 +34,10 @@ def mark_lesson(profile: ProfileArrays, following: NextArrays, work: Work, numbe
     for i in range(len(work.a)):
         work.a[i] = 1.0 if profile.drive[i] == number else 0.0
         work.b[i] = 1.0 if profile.offset_mps[i] == following.offset_mps[i] else 0.0
-        work.c[i] = _is_as_left(_waits_faster(profile), _waits_faster(following), i)
-        work.d[i] = _is_as_left(_waits_slower(profile), _waits_slower(following), i)
-        work.e[i] = _is_as_left(_lever_faster(profile), _lever_faster(following), i)
-        work.f[i] = _is_as_left(_lever_slower(profile), _lever_slower(following), i)
+        work.c[i] = _is_as_left(of_pedals(profile, FASTER), of_pedals(following, FASTER), i)
+        work.d[i] = _is_as_left(of_pedals(profile, SLOWER), of_pedals(following, SLOWER), i)
+        work.e[i] = _is_as_left(of_lever(profile, FASTER), of_lever(following, FASTER), i)
+        work.f[i] = _is_as_left(of_lever(profile, SLOWER), of_lever(following, SLOWER), i)
 
 
 def merge_before(profile: ProfileArrays, following: NextArrays, work: Work) -> None:
@@ -53,37 +61,15 @@ def merge_before(profile: ProfileArrays, following: NextArrays, work: Work) -> N
         if work.b[i] <= 0.0:
             following.offset_mps[i] = profile.offset_mps[i]
         if work.c[i] <= 0.0:
-            _copy_waiting(_waits_faster(profile), _waits_faster(following), i)
+            copy_counter(of_pedals(profile, FASTER), of_pedals(following, FASTER), i)
         if work.d[i] <= 0.0:
-            _copy_waiting(_waits_slower(profile), _waits_slower(following), i)
+            copy_counter(of_pedals(profile, SLOWER), of_pedals(following, SLOWER), i)
         if work.e[i] <= 0.0:
-            _copy_waiting(_lever_faster(profile), _lever_faster(following), i)
+            copy_counter(of_lever(profile, FASTER), of_lever(following, FASTER), i)
         if work.f[i] <= 0.0:
-            _copy_waiting(_lever_slower(profile), _lever_slower(following), i)
+            copy_counter(of_lever(profile, SLOWER), of_lever(following, SLOWER), i)
 
 
-def _waits_faster(of: ProfileArrays | NextArrays) -> Waiting:
-    return of.evidence_faster, of.pending_faster, of.pending_faster_mps
-
-
-def _waits_slower(of: ProfileArrays | NextArrays) -> Waiting:
-    return of.evidence_slower, of.pending_slower, of.pending_slower_mps
-
-
-def _lever_faster(of: ProfileArrays | NextArrays) -> Waiting:
-    return of.offset_evidence_faster, of.offset_pending_faster, of.offset_pending_faster_mps
-
-
-def _lever_slower(of: ProfileArrays | NextArrays) -> Waiting:
-    return of.offset_evidence_slower, of.offset_pending_slower, of.offset_pending_slower_mps
-
-
-def _is_as_left(one: Waiting, other: Waiting, i: int) -> float:
-    same = one[0][i] == other[0][i] and one[1][i] == other[1][i] and one[2][i] == other[2][i]
-    return 1.0 if same else 0.0
-
-
-def _copy_waiting(source: Waiting, to: Waiting, i: int) -> None:
-    to[0][i] = source[0][i]
-    to[1][i] = source[1][i]
-    to[2][i] = source[2][i]
+def _is_as_left(one: Counter, other: Counter, i: int) -> float:
+    same = one[EVIDENCE][i] == other[EVIDENCE][i] and one[PENDING][i] == other[PENDING][i]
+    return 1.0 if same and one[MEAN][i] == other[MEAN][i] else 0.0

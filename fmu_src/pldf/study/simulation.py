@@ -15,16 +15,8 @@ from typing import Any, Final, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from vehicle_models import (
-    ahead_kernel,
-    chance,
-    clock,
-    driver_kernel,
-    pedal_kernel,
-    script_kernel,
-    vehicle_kernel,
-    wish_kernel,
-)
+from vehicle_models import vehicle_kernel
+from vehicle_models.driver import KERNELS as DRIVER_KERNELS
 from vehicle_models.driver import ScriptedDriver
 from vehicle_models.script_kernel import ScriptArrays
 from vehicle_models.vehicle import LongitudinalVehicle
@@ -37,7 +29,7 @@ from ..errors import ModelError
 from ..function import DrivingFunction
 from ..instance import Instance, zeros
 from ..kernel.arrays import FloatArray, NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
-from ..kernel.codes import LEARN_OFF, OFF, STANDBY
+from ..kernel.codes import LEARN_OFF
 from ..kernel.signals import signals_of
 from ..kernel.state import PldfState
 from ..profiles.learned_columns import fill, next_iteration
@@ -54,16 +46,7 @@ from .phases import HANDS_OFF, PHASES, PREFERENCE, SCRIPT, Phase, seed_of_drive
 
 Packed = NDArray[np.void]
 
-DRIVER_MODULES: Final = (
-    ahead_kernel,
-    chance,
-    clock,
-    driver_kernel,
-    pedal_kernel,
-    script_kernel,
-    wish_kernel,
-)
-COMPILED_MODULES: Final = (*KERNEL_MODULES, vehicle_kernel, *DRIVER_MODULES, loop)
+COMPILED_MODULES: Final = (*KERNEL_MODULES, vehicle_kernel, *DRIVER_KERNELS, loop)
 
 
 def simulate_participant(
@@ -95,7 +78,7 @@ def machine_code() -> Namespace:
     """Return the compiled functions of kernel, driver and loop by name."""
     function = compile_modules(KERNEL_MODULES, inline=True)
     vehicle = compile_modules((vehicle_kernel,), function, inline=True)
-    driver = compile_modules(DRIVER_MODULES, function, inline=True)
+    driver = compile_modules(DRIVER_KERNELS, function, inline=True)
     called = {**function, **vehicle, **driver}
     return {**called, **compile_modules((loop,), called, inline=True)}
 
@@ -198,8 +181,7 @@ class Simulation:
         st["driver_id"] = stored.driver_id
         st["apply_learned"] = phase.apply_learned
         st["learn"] = self.settings.learn if phase.learn else LEARN_OFF
-        st["mode"] = STANDBY if self.function.record.main_switch else OFF
-        self.code["begin_cluster"](st[0])
+        self.code["stand_by"](st[0])
         st["profile_iteration"] = len(stored.iterations)
         return st
 
