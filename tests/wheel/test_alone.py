@@ -17,7 +17,14 @@ import pytest
 import vehicle_models
 
 COMMAND = Path(sys.executable).with_name("pldf.exe" if sys.platform == "win32" else "pldf")
-FMUS = {"AdaptivePLDF.fmu", "LongitudinalVehicle.fmu", "ScriptedDriver.fmu"}
+FMUS = {
+    "AdaptivePLDF.fmu",
+    "LeadVehicle.fmu",
+    "LongitudinalVehicle.fmu",
+    "ScriptedDriver.fmu",
+}
+PHASES = {"A1", "A2", "A3", "B1", "B2", "B3"}
+PACKAGES = {f"study_{traffic}{phase}.ssp" for traffic in ("", "traffic_") for phase in PHASES}
 
 
 @pytest.fixture
@@ -91,8 +98,8 @@ def test_a_drive_builds_its_fmus_on_first_use_and_says_so(empty: Path) -> None:
 def test_fmus_and_packages_are_built_and_drive(empty: Path) -> None:
     good(COMMAND, "build")
     names = {path.name for path in Path("dist").iterdir()}
-    assert names > FMUS
-    assert len(names - FMUS) == 6  # the phases as SSP packages
+    assert names == FMUS | PACKAGES | {"inline"}
+    assert {path.name for path in Path("dist", "inline").iterdir()} == PACKAGES
     cache = empty / "cache"
     assert "in dist" in good(COMMAND, "drive", "--phase", "A1", cache=cache)
     assert not cache.exists()
