@@ -83,18 +83,47 @@ def test_a_distribution_survives_its_table() -> None:
     assert table["wish.offset_mps"] == {"law": "normal", "mean": 1.0, "sd": 0.5, "low": 0.0}
     assert read_distribution(table) == ours
     assert read_distribution({}) == Distribution()
+    numbers = {"wish_offset_mps": 2.1, "wish_accel_min_mps2": -2.0, "driver_uses_lever": 1.0}
+    same = ours.with_numbers(numbers)
+    assert same.as_table()["wish.offset_mps"] == 2.1
+    assert read_distribution(same.as_table()) == same.with_laws(
+        {name: getattr(Distribution(), name) for name in numbers}
+    )
+
+
+def test_a_number_is_the_same_for_everybody_and_nothing_else_moves() -> None:
+    said = {"wish.offset_mps": 2, "driver.uses_lever": True, "wish.jerk_max_mps3": 0.8}
+    same = sample_participants(9, 1, read_distribution(said))
+    numbers = {"wish_offset_mps": 2.0, "driver_uses_lever": 1.0, "wish_jerk_max_mps3": 0.8}
+    for drawn, one in zip(sample_participants(9, 1), same, strict=True):
+        assert (one.id, one.seed) == (drawn.id, drawn.seed)
+        assert dict(one.values) == {**drawn.values, **numbers}
 
 
 @pytest.mark.parametrize(
     ("table", "message"),
     [
-        ({"wish.hope": {"law": "share", "share": 1}}, "not a driver parameter; known: wish.offset"),
+        (
+            {"wish.hope": {"law": "share", "share": 1}},
+            "not a driver parameter; there are e.g. wish.offset_mps",
+        ),
+        ({"seed": 3}, "not a driver parameter"),
+        (
+            {"wish.jerk_max_mps3": {"law": "share", "share": 1}},
+            "no law, since .* the same for everybody: a number from 0 to 50 m/s3",
+        ),
+        ({"wish.offset_mps": 31}, "= 31 must be a number from -20 to 30 m/s; or a law, in braces$"),
+        ({"wish.jerk_max_mps3": -1.0}, "= -1.0 must be a number from 0 to 50 m/s3$"),
+        ({"wish.offset_mps": float("nan")}, "= nan must be a number from -20"),
+        ({"wish.offset_mps": True}, "= true must be a number from -20"),
+        ({"wish.offset_mps": "much"}, '= "much" must be a number from -20'),
+        ({"driver.uses_lever": 0.5}, "= 0.5 must be true or false; or a law, in braces$"),
         ({"wish.offset_mps": {"law": "gauss"}}, "law = one of normal, lognormal"),
         (
             {"wish.offset_mps": {"law": "lognormal", "median": 1.0, "sigma": 1e9}},
             r"sigma = 1e\+09 must lie between 0 and 10",
         ),
-        ({"wish.offset_mps": 2.0}, "law = one of"),
+        ({"wish.offset_mps": {"mean": 2.0, "sd": 1.0}}, "law = one of"),
         ({"wish.offset_mps": {"law": "normal", "mean": 1}}, "missing 1 required .* 'sd'"),
         ({"wish.offset_mps": {"law": "normal", "mean": 1, "sd": "x"}}, "could not convert"),
     ],

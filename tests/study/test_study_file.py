@@ -79,6 +79,7 @@ def test_everything_can_be_said(tmp_path: Path) -> None:
         [distribution]
         "driver.uses_lever" = { law = "share", share = 0.0 }
         "wish.offset_mps" = { law = "uniform", low = 3.0, high = 3.5 }
+        "driver.spread" = 0.1
         """,
     )
     assert [phase.name for phase in said.settings.phases] == ["A1", "A2", "A3", "B1", "B2", "B3"]
@@ -98,6 +99,7 @@ def test_everything_can_be_said(tmp_path: Path) -> None:
     for one in said.participants:
         assert one.value("driver_uses_lever") == 0
         assert 3.0 <= one.value("wish_offset_mps") <= 3.5
+        assert one.value("driver_spread") == 0.1
 
 
 ERRORS = {
@@ -140,7 +142,10 @@ ERRORS = {
         'line 2, function.learning.stretch_time_mode: "NO" must be one of "RECORDED", '
     ),
     "[vehicle]\ngrade_from_route = 1": "line 2, vehicle.grade_from_route: 1 must be true or false",
-    '\n[distribution]\n"wish.offset_mps" = 3.0': "line 3, distribution.wish.offset_mps: ",
+    '\n[distribution]\n"wish.offset_mps" = 33.0': (
+        'line 3, distribution.wish.offset_mps: distribution: "wish.offset_mps" = 33.0 must be a '
+        "number from -20 to 30 m/s"
+    ),
     '[distribution]\n"wish.offset_mps" = { law = "normal", mean = 3 }': (
         "line 2, distribution.wish.offset_mps: "
     ),

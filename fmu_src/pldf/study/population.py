@@ -10,19 +10,19 @@ moves every person's value of it and nothing else (common random numbers: a smoo
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
+from difflib import get_close_matches
 from math import exp
 from statistics import NormalDist
 from typing import Any, Final, Protocol
 
 import numpy as np
 
-from vehicle_models.driver_state import DriverState
-
 from ..errors import ModelError
-from ..kernel.signals import signals_of
+from ..kernel.signals import Signal
 from ..kernel.units import MPS_PER_KMH
-from .participants import Participant
+from ..toml_file import shown
+from .participants import DRIVER_SIGNALS, Participant
 
 STANDARD: Final = NormalDist()
 # Each drive takes the next seed: room for many drives below the driver model's last one.
@@ -115,6 +115,9 @@ FIELDS: Final = (
 class Distribution:
     """Laws of the parameters that differ from person to person, by field of ``DriverState``.
 
+    ``numbers`` are parameters that are the same for everybody, in place of a law or of the driver
+    model's default.
+
     Given by the study's description are the laws without a comment. Decisions: the sigmas of
     threshold, reaction and reactivation; the strengths, whose medians are the driver model's; that
     the wait before the lever differs too; and all ends that are not named in the description, which
@@ -134,30 +137,52 @@ class Distribution:
     driver_reactivation_s: Law = Lognormal(2.0, 0.4, low=0.3, high=20.0)  # sigma: decision
     driver_uses_lever: Law = Share(0.95)
     driver_lever_settled_s: Law = Lognormal(3.0, 0.3, low=0.3, high=20.0)  # decision
+    numbers: Mapping[str, float] = field(default_factory=dict)
 
     def with_laws(self, laws: Mapping[str, Law]) -> Distribution:
         """Return the same distribution with other laws for some fields."""
-        return replace(self, **laws)
+        return replace(self, **dict[str, Any](laws))
 
-    def as_table(self) -> dict[str, dict[str, str | float]]:
-        """Return {public parameter name: law as table}, the form of a study file."""
-        return {_public_name(name): _law_table(getattr(self, name)) for name in FIELDS}
+    def with_numbers(self, numbers: Mapping[str, float]) -> Distribution:
+        """Return the same distribution with some parameters, by field, the same for everybody."""
+        return replace(self, numbers={**self.numbers, **numbers})
+
+    @property
+    def laws(self) -> dict[str, Law]:
+        """The laws by field, without the parameters that are the same for everybody."""
+        return {name: getattr(self, name) for name in FIELDS if name not in self.numbers}
+
+    def as_table(self) -> dict[str, dict[str, str | float] | float]:
+        """Return {public parameter name: law as table, or number}, the form of a study file."""
+        laws: dict[str, dict[str, str | float] | float] = {
+            name: _law_table(law) for name, law in self.laws.items()
+        }
+        return {
+            DRIVER_SIGNALS[name].name: entry for name, entry in {**laws, **self.numbers}.items()
+        }
 
 
 def read_distribution(table: Mapping[str, Any]) -> Distribution:
-    """Return the starting values with the laws of ``table``, which has the form of ``as_table``.
+    """Return the starting values with what ``table`` says, which has the form of ``as_table``.
 
     Raises:
-        ModelError: unknown parameter or law, or numbers that are missing or too many.
+        ModelError: unknown parameter or law, numbers that are missing or too many, or a number out
+            of the parameter's range.
     """
-    fields_by_name = {_public_name(name): name for name in FIELDS}
-    laws = {}
-    for name, law in table.items():
-        if name not in fields_by_name:
-            known = ", ".join(fields_by_name)
-            raise ModelError(f'distribution: "{name}" is not a driver parameter; known: {known}')
-        laws[fields_by_name[name]] = _read_law(name, law)
-    return Distribution().with_laws(laws)
+    signals = {signal.name: signal for signal in DRIVER_SIGNALS.values()}
+    laws, numbers = {}, {}
+    for name, entry in table.items():
+        if name not in signals:
+            near = ", ".join(get_close_matches(name, signals, cutoff=0.3)) or next(iter(signals))
+            raise ModelError(
+                f'distribution: "{name}" is not a driver parameter; there are e.g. {near}'
+            )
+        signal = signals[name]
+        if isinstance(entry, Mapping):
+            laws[signal.field] = _read_law(signal, entry)
+        else:
+            numbers[signal.field] = _read_number(signal, entry)
+    return Distribution().with_laws(laws).with_numbers(numbers)
 
 
 def sample_participants(
@@ -179,13 +204,10 @@ def draw_participant(index: int, seed: int, distribution: Distribution) -> Parti
 
 def values_at(quantiles: Sequence[float], distribution: Distribution) -> dict[str, float]:
     """Return the parameters of the person at ``quantiles`` (above 0, below 1; as ``FIELDS``)."""
-    return {
+    drawn = {
         name: getattr(distribution, name).at(u) for name, u in zip(FIELDS, quantiles, strict=True)
     }
-
-
-def _public_name(field: str) -> str:
-    return next(s.name for s in signals_of(DriverState) if s.field == field)
+    return {**drawn, **distribution.numbers}
 
 
 def _law_table(law: Law) -> dict[str, str | float]:
@@ -194,8 +216,14 @@ def _law_table(law: Law) -> dict[str, str | float]:
     return {"law": kind, **numbers}
 
 
-def _read_law(name: str, table: Any) -> Law:
-    if not isinstance(table, Mapping) or table.get("law") not in LAWS:
+def _read_law(signal: Signal, table: Mapping[str, Any]) -> Law:
+    name = signal.name
+    if signal.field not in FIELDS:
+        raise ModelError(
+            f'distribution: "{name}" has no law, since it does not differ from person to person; '
+            f"write a number, the same for everybody: {_allowed(signal)}"
+        )
+    if table.get("law") not in LAWS:
         raise ModelError(f'distribution: "{name}" needs law = one of {", ".join(LAWS)}')
     numbers = {key: value for key, value in table.items() if key != "law"}
     try:
@@ -203,3 +231,26 @@ def _read_law(name: str, table: Any) -> Law:
     except (TypeError, ValueError) as error:
         raise ModelError(f'distribution: "{name}": {error}') from error
     return law
+
+
+def _read_number(signal: Signal, entry: Any) -> float:
+    """Return a parameter that is the same for everybody."""
+    low, high = signal.range
+    if signal.kind == "Boolean":
+        usable = entry in (False, True)
+    else:
+        usable = isinstance(entry, int | float) and not isinstance(entry, bool)
+    if usable and low <= entry <= high:
+        return float(entry)
+    law = "; or a law, in braces" if signal.field in FIELDS else ""
+    raise ModelError(
+        f'distribution: "{signal.name}" = {shown(entry)} must be {_allowed(signal)}{law}'
+    )
+
+
+def _allowed(signal: Signal) -> str:
+    """Return what a number that is the same for everybody may be."""
+    if signal.kind == "Boolean":
+        return "true or false"
+    low, high = signal.range
+    return f"a number from {low:g} to {high:g}{f' {signal.unit}' if signal.unit else ''}"
