@@ -77,7 +77,10 @@ def test_the_fmus_give_the_same_to_the_bit(
 ) -> None:
     chosen = settings(*phases, recorded=(participant.id,), step_s=step_s)
     chosen = replace(
-        chosen, function={"learning.stretch_factor": 0.6}, vehicle={"body.mass_kg": 1900.0}
+        chosen,
+        function={"learning.stretch_factor": 0.6},
+        vehicle={"body.mass_kg": 1900.0},
+        threshold_growth_per_drive=0.3,
     )
     in_process = simulate_participant(chosen, participant)
     assert_same(in_process, drive_participant(fmus, chosen, participant, lambda _: None))
@@ -156,6 +159,24 @@ def test_an_even_participant_drives_b_first_when_counterbalanced() -> None:
         "P002": ["A2", "B1", "B2", "B3", "A1", "A3"],
     }
     assert [p.name for p in order_of(settings(), CAREFUL)] == list(PHASES)
+
+
+def test_the_threshold_of_who_gets_used_to_it_grows_by_a_share_per_drive() -> None:
+    drives = ("A1", "A2", "A3")
+    grown = simulate_participant(replace(settings(*drives), threshold_growth_per_drive=0.5), BOLD)
+    for number, threshold in enumerate((0.9, 0.9 * 1.5, 0.9 * 1.5 * 1.5)):
+        alike = replace(BOLD, values={**BOLD.values, "driver_threshold_mps": threshold})
+        assert grown[number].row == simulate_participant(settings(*drives), alike)[number].row
+    assert grown[1].row.interventions < grown[0].row.interventions
+
+
+def test_who_drives_b_before_a_is_used_to_it_in_a() -> None:
+    both = replace(settings("A1", "A2", "B1"), counterbalanced=True, threshold_growth_per_drive=0.5)
+    rows = [drive.row for drive in simulate_participant(both, replace(BOLD, id="P002"))]
+    assert [row.phase for row in rows] == ["A2", "B1", "A1"]
+    grown = {**BOLD.values, "driver_threshold_mps": 0.9 * 1.5 * 1.5}
+    alike = simulate_participant(settings("A3", "A3", "A1"), replace(BOLD, id="P002", values=grown))
+    assert rows[2] == alike[2].row
 
 
 def test_seeds_stay_in_the_range_of_the_fmu() -> None:

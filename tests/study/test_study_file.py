@@ -67,6 +67,7 @@ def test_everything_can_be_said(tmp_path: Path) -> None:
         drives.phases = ["A2", "B1"]
         drives.per_phase = 3
         drives.order = "counterbalanced"
+        drives.threshold_growth_per_drive = 0.02
         participants = { count = 3, seed = 9 }
         recordings.participants = ["P003", "P001"]
         road.route = "road.csv"
@@ -86,6 +87,7 @@ def test_everything_can_be_said(tmp_path: Path) -> None:
     learns = [(p.apply_learned, p.learn, p.intervenes) for p in said.settings.phases]
     assert learns == [PHASES["A2"][1:]] * 3 + [PHASES["B1"][1:]] * 3
     assert said.settings.counterbalanced
+    assert said.settings.threshold_growth_per_drive == 0.02
     assert said.settings.learn == LEARN_CONSISTENT
     assert said.settings.function == {
         "learn": LEARN_CONSISTENT,
@@ -128,6 +130,12 @@ ERRORS = {
     "titel = 3": "line 1, titel: unknown; did you mean title?",
     "title = 3": "line 1, title: 3 must be a text in quotes",
     'title = "a"\nx = ?\n': "not valid TOML: Invalid value (at line 2, column 5)",
+    "[drives]\nthreshold_growth_per_drive = -0.1": (
+        "line 2, drives.threshold_growth_per_drive: -0.1 must be a number from 0 to 1"
+    ),
+    "[drives]\nper_phase = 3\nthreshold_growth_per_drive = 0.5": (
+        "line 3, drives.threshold_growth_per_drive: P0"
+    ),
     '[road]\nroute = "nowhere.csv"': "line 2, road.route: nowhere.csv: cannot be read",
     '[function]\n"learning.stretch_factor" = 9.0': (
         "line 2, function.learning.stretch_factor: 9.0 must be a number from 0 to "

@@ -14,7 +14,8 @@ from ..cosim.kinds import USUAL_FOLDER
 from ..study.own_files import DRIVES, PARTICIPANTS
 from ..study.results import StudyResults
 from ..study.runner import in_processes, on_cluster, prepare_processes, run_missing
-from ..study.study_file import ONE_DRIVER, Study, changes_of, read_study, study_path
+from ..study.study_file import ONE_DRIVER, Study, read_study, study_path
+from ..study.study_parameters import changes_of
 from ..study.unit import Job, ParticipantResult
 from ..toml_file import Key
 from .shared.coupling import (

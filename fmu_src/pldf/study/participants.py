@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import prod
 from typing import Final
 
 from vehicle_models.driver_state import DriverState
@@ -65,6 +66,8 @@ class StudySettings:
         vehicle: the same of the vehicle.
         step_s: communication step.
         recorded: ids of the participants whose recordings and profiles are kept.
+        threshold_growth_per_drive: share by which a driver's threshold grows with each drive: of
+            people who get used to the function.
     """
 
     road: Road
@@ -74,6 +77,7 @@ class StudySettings:
     vehicle: Mapping[str, Value] = field(default_factory=dict)
     step_s: float = STEP_S
     recorded: frozenset[str] = frozenset()
+    threshold_growth_per_drive: float = 0.0
 
     @property
     def route(self) -> Route:
@@ -84,6 +88,11 @@ class StudySettings:
     def learn(self) -> int:
         """How the drives learn that do (LEARN in ``kernel.codes``)."""
         return int(self.function.get("learn", LEARN_FAITHFUL))
+
+    def threshold_factor(self, drives: int) -> float:
+        """Return by what the threshold of who has driven so many ``drives`` is multiplied."""
+        # Products, not a power: a C library's may differ in the last bit.
+        return prod([1.0 + self.threshold_growth_per_drive] * drives, start=1.0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -157,6 +157,7 @@ class Simulation:
             trace=zeros(TraceArrays, self.nodes),
         )
         vehicle, driver = pack(self.vehicle.record), person.packed(phase, number)
+        driver["driver_threshold_mps"] *= self.settings.threshold_factor(number)
         pldf = self._packed_function(phase, stored)
         ends = ends_of(self.settings)
         kept = person.participant.id in self.settings.recorded

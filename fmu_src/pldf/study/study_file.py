@@ -4,38 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Final
 
 from msgspec.structs import asdict
 
-from vehicle_models.vehicle_state import VehicleState
-
 from ..errors import ModelError
 from ..findings import Finding
-from ..kernel.codes import LEARN_FAITHFUL, LEARN_OFF
-from ..kernel.signals import Signal, signals_of
-from ..kernel.state import PldfState
 from ..roads import Road, RoadOptions, open_road
 from ..roads.options import OptionNeededError, said
-from ..settings import parameter_value
-from ..toml_file import Key, TomlFile, listed, shown
-from .participants import DRIVER_SIGNALS, Participant, StudySettings
-from .participants_file import read_participants
+from ..toml_file import Key, TomlFile, shown
+from .participants import Participant, StudySettings
 from .phases import PHASES, Phase
-from .population import Distribution, read_distribution, sample_participants
-from .study_tables import StudyTables, parameter_table
+from .study_parameters import function_of, parameters_of
+from .study_people import check_thresholds, people_of, recorded_of
+from .study_tables import StudyTables
 
 # The packaged study of one driver through the FMUs.
 ONE_DRIVER: Final = "one_driver"
 # Studies that come with the package, by name.
 PACKAGED: Final = Path(__file__).parent / "studies"
-# Parameters that follow from the study file's other keys.
-_NOT_TO_SET: Final = (
-    "apply_learned", "driver_id", "learn_consistent", "learn_faithful", "localization",
-    "main_switch", "route_id", "start_s_m",
-)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,34 +64,6 @@ def study_path(name: str) -> Path:
     raise ModelError(f"{name}: no such study file; packaged are {known}")
 
 
-def changes_of(settings: Mapping[str, str]) -> dict[Key, Any]:
-    """Return parameters that a person named, as changes of a study file.
-
-    Args:
-        settings: text by FMI name, with ``pldf.``, ``vehicle.`` or ``driver.`` before it where
-            more than one of the three has it.
-
-    Raises:
-        ModelError: there is no such parameter in a study file, or it cannot have this value.
-    """
-    places: dict[str, list[Key]] = {}
-    for table, part in _PARTS.items():
-        for name in SETTABLE[table]:
-            places.setdefault(name, []).append((table, name))
-            places.setdefault(f"{part}.{name}", []).append((table, name))
-    changes = {}
-    for given, text in settings.items():
-        if given not in places:
-            near = ", ".join(get_close_matches(given, places, n=3, cutoff=0.5)) or "learning.weight"
-            raise ModelError(f"--set {given}: not in a study file; did you mean {near}?")
-        if len(places[given]) > 1:
-            both = " or ".join(f"{_PARTS[table]}.{name}" for table, name in places[given])
-            raise ModelError(f"--set {given}: more than one FMU has it, write {both}")
-        (key,) = places[given]
-        changes[key] = _uncoded(SETTABLE[key[0]][key[1]], text)
-    return changes
-
-
 def read_study(path: Path, changes: Mapping[Key, Any] | None = None) -> Study:
     """Read a study file.
 
@@ -117,16 +77,18 @@ def read_study(path: Path, changes: Mapping[Key, Any] | None = None) -> Study:
     file = TomlFile(path, changes)
     tables = file.read(StudyTables)
     notes: list[Finding] = []
-    people = _participants(file, tables, notes)
+    people = people_of(file, tables, notes)
     settings = StudySettings(
         road=_road(file, tables, typed=bool(changes)),
         phases=_phases(file, tables),
         counterbalanced=tables.drives.order == "counterbalanced",
-        function=_function(file),
-        vehicle=_parameters(file, "vehicle", SETTABLE["vehicle"]),
+        function=function_of(file),
+        vehicle=parameters_of(file, "vehicle"),
         step_s=tables.drives.step_s,
-        recorded=_recorded(file, tables, [person.id for person in people]),
+        recorded=recorded_of(file, tables, [person.id for person in people]),
+        threshold_growth_per_drive=tables.drives.threshold_growth_per_drive,
     )
+    check_thresholds(file, settings, people)
     return Study(
         title=tables.title or path.stem,
         settings=settings,
@@ -136,59 +98,6 @@ def read_study(path: Path, changes: Mapping[Key, Any] | None = None) -> Study:
         source=file.text,
         notes=(*settings.road.route.notes, *notes),
     )
-
-
-def _settable(record: type[PldfState] | type[VehicleState]) -> dict[str, Signal]:
-    return {
-        signal.name: signal
-        for signal in signals_of(record)
-        if signal.causality == "parameter" and signal.name not in _NOT_TO_SET
-    }
-
-
-# The tables of parameters, and what the coupled models are called.
-_PARTS: Final = {"function": "pldf", "vehicle": "vehicle", "driver": "driver"}
-# The tables of parameters: what may be set there, by FMI name.
-SETTABLE: Final[Mapping[str, Mapping[str, Signal]]] = {
-    "function": _settable(PldfState),
-    "vehicle": _settable(VehicleState),
-    "driver": {signal.name: signal for signal in DRIVER_SIGNALS.values()},
-}
-
-
-def _parameters(file: TomlFile, table: str, known: Mapping[str, Signal]) -> dict[str, float | int]:
-    """Return a table of parameters; enumerations and Booleans as numbers."""
-    read = file.read(parameter_table(known.values()), table)
-    return {
-        name: _coded(known[name], getattr(read, known[name].field))
-        for name in file.table.get(table, {})
-    }
-
-
-def _function(file: TomlFile) -> dict[str, float | int]:
-    """Return the parameters of the driving function; ``learn`` is how drives learn that do."""
-    values = _parameters(file, "function", SETTABLE["function"])
-    if values.get("learn", LEARN_FAITHFUL) == LEARN_OFF:
-        file.fail(
-            ("function", "learn"),
-            '"OFF": the drives say whether they learn, this says how: write "FAITHFUL" or '
-            '"CONSISTENT", or choose drives that do not learn in [drives], such as A1',
-        )
-    return values
-
-
-def _uncoded(signal: Signal, text: str) -> Any:
-    """Return what a study file says for a value that was given as text."""
-    value = parameter_value(signal, text)
-    if signal.enumeration is not None and 0 <= value < len(signal.enumeration.items):
-        return signal.enumeration.items[int(value)]
-    return bool(value) if signal.kind == "Boolean" else value
-
-
-def _coded(signal: Signal, value: Any) -> float | int:
-    if signal.enumeration is not None:
-        return signal.enumeration.items.index(value)
-    return float(value) if signal.kind == "Real" else int(value)
 
 
 def _road(file: TomlFile, tables: StudyTables, *, typed: bool) -> Road:
@@ -240,54 +149,3 @@ def _phases(file: TomlFile, tables: StudyTables) -> tuple[Phase, ...]:
         counts[system] += 1
         numbered.append(phase._replace(name=f"{system}{counts[system]}"))
     return tuple(numbered)
-
-
-def _recorded(file: TomlFile, tables: StudyTables, known: list[str]) -> frozenset[str]:
-    names = tables.recordings.participants
-    if names == "all":
-        return frozenset(known)
-    everybody = set(known)
-    for name in names:
-        if name not in everybody:
-            file.fail(
-                ("recordings", "participants"), f"{shown(name)} must be one of {listed(known)}"
-            )
-    return frozenset(names)
-
-
-def _participants(
-    file: TomlFile, tables: StudyTables, notes: list[Finding]
-) -> tuple[Participant, ...]:
-    """Return those of a file, the one driver who is described, or people who are drawn."""
-    table, given = tables.participants, file.table.get("participants", {})
-    if table.file:
-        _refuse(file, ("count", "seed", "first"), ("driver", "distribution"), "participants.file")
-        return read_participants(file.path.parent / table.file, notes)
-    if tables.driver is not None:
-        _refuse(file, (), ("distribution",), "a driver who is described")
-        if given.get("count", 1) != 1:
-            file.fail(("participants", "count"), "[driver] describes one driver: write count = 1")
-        values = _parameters(file, "driver", SETTABLE["driver"])
-        fields = {SETTABLE["driver"][name].field: float(value) for name, value in values.items()}
-        return (Participant(f"P{table.first:03d}", table.seed, fields),)
-    return tuple(sample_participants(table.count, table.seed, _distribution(file), table.first))
-
-
-def _refuse(file: TomlFile, keys: tuple[str, ...], tables: tuple[str, ...], beside: str) -> None:
-    """Fail if one of these is given, since ``beside`` says it all."""
-    for key in keys:
-        if key in file.table["participants"]:
-            file.fail(("participants", key), f"not together with {beside}, which says it all")
-    for table in tables:
-        if table in file.table:
-            file.fail((table,), f"not together with {beside}")
-
-
-def _distribution(file: TomlFile) -> Distribution:
-    table = file.table.get("distribution", {})
-    for name, law in table.items():
-        try:
-            read_distribution({name: law})
-        except ModelError as problem:
-            file.fail(("distribution", name), str(problem))
-    return read_distribution(table)

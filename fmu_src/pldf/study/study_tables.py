@@ -34,6 +34,7 @@ Seed = Annotated[int, Meta(ge=0, le=SEED_MAX, description=f"a whole number from 
 PerPhase = Annotated[
     int, Meta(ge=1, le=PER_PHASE_MAX, description=f"a whole number from 1 to {PER_PHASE_MAX}")
 ]
+Growth = Annotated[float, Meta(ge=0.0, le=1.0, description="a number from 0 to 1")]
 Step = Annotated[
     float,
     Meta(
@@ -65,6 +66,7 @@ class DrivesTable(Struct, forbid_unknown_fields=True, frozen=True):
     phases: tuple[PhaseName, ...] = ("A1", "A2", "A3", "B1", "B2", "B3")
     order: Literal["fixed", "counterbalanced"] = "fixed"
     per_phase: PerPhase = 1
+    threshold_growth_per_drive: Growth = 0.0
     step_s: Step = STEP_S
     through: Literal["kernels", "fmus"] = "kernels"
 

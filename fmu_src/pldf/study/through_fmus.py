@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 from ..cosim.fmu import Fmu
 from ..cosim.master import Drive, drive
 from ..cosim.road_values import road_values
+from ..cosim.values import Value
 from ..errors import ModelError
 from ..kernel.state import PldfState
 from ..profiles.store import ProfileStore
@@ -60,17 +61,17 @@ class _Driver:
                 # Whether a drive learns at all is a matter of its phase.
                 "pldf": {k: v for k, v in settings.function.items() if k != "learn"},
                 "vehicle": settings.vehicle,
-                "driver": {
-                    DRIVER_SIGNALS[name].name: participant.value(name)
-                    for name in participant.values
-                },
             },
         )
 
     def drive(self, number: int, phase: Phase, watch: Watch) -> DriveResult:
         """Drive ``phase`` as the drive with this number, from 0."""
         participant = self._person.participant
-        setting = replace(self._setting, seed=seed_of_drive(participant.seed, number))
+        setting = replace(
+            self._setting,
+            seed=seed_of_drive(participant.seed, number),
+            more={**self._setting.more, "driver": self._described(number)},
+        )
         followed = self._simulation.followed(self._stored(), phase)
         done = drive(
             self._fmus,
@@ -87,6 +88,16 @@ class _Driver:
             iteration=self._stored().iterations[-1] if phase.learn else None,
             warnings=tuple(m for m in done.messages if m.level == "warning"),
         )
+
+    def _described(self, number: int) -> dict[str, Value]:
+        """Return the parameters of the driver before the drive with this number, from 0."""
+        one = self._person.participant
+        described: dict[str, Value] = {
+            DRIVER_SIGNALS[name].name: one.value(name) for name in one.values
+        }
+        threshold = DRIVER_SIGNALS["driver_threshold_mps"]
+        grown_mps = one.value(threshold.field) * self._settings.threshold_factor(number)
+        return {**described, threshold.name: grown_mps}
 
     def _stored(self) -> StoredProfile:
         blank = self._simulation.stored_for(self._person.participant)

@@ -1,0 +1,80 @@
+"""The people of a study file: who drives, and who of them is recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ..errors import ModelError
+from ..findings import Finding
+from ..toml_file import TomlFile, listed, shown
+from .participants import DRIVER_SIGNALS, Participant, StudySettings
+from .participants_file import read_participants
+from .population import Distribution, read_distribution, sample_participants
+from .study_parameters import SETTABLE, parameters_of
+from .study_tables import StudyTables
+
+
+def people_of(file: TomlFile, tables: StudyTables, notes: list[Finding]) -> tuple[Participant, ...]:
+    """Return those of a file, the one driver who is described, or people who are drawn."""
+    table, given = tables.participants, file.table.get("participants", {})
+    if table.file:
+        _refuse(file, ("count", "seed", "first"), ("driver", "distribution"), "participants.file")
+        return read_participants(file.path.parent / table.file, notes)
+    if tables.driver is not None:
+        _refuse(file, (), ("distribution",), "a driver who is described")
+        if given.get("count", 1) != 1:
+            file.fail(("participants", "count"), "[driver] describes one driver: write count = 1")
+        values = parameters_of(file, "driver")
+        fields = {SETTABLE["driver"][name].field: float(value) for name, value in values.items()}
+        return (Participant(f"P{table.first:03d}", table.seed, fields),)
+    return tuple(sample_participants(table.count, table.seed, _distribution(file), table.first))
+
+
+def recorded_of(file: TomlFile, tables: StudyTables, known: list[str]) -> frozenset[str]:
+    """Return the ids of those whose recordings and profiles are kept."""
+    names = tables.recordings.participants
+    if names == "all":
+        return frozenset(known)
+    everybody = set(known)
+    for name in names:
+        if name not in everybody:
+            file.fail(
+                ("recordings", "participants"), f"{shown(name)} must be one of {listed(known)}"
+            )
+    return frozenset(names)
+
+
+def check_thresholds(
+    file: TomlFile, settings: StudySettings, people: Sequence[Participant]
+) -> None:
+    """Fail if somebody's threshold grows beyond what the driver model takes."""
+    signal = DRIVER_SIGNALS["driver_threshold_mps"]
+    patient = max(people, key=lambda one: one.value(signal.field))
+    before = len(settings.phases) - 1
+    grown_mps = patient.value(signal.field) * settings.threshold_factor(before)
+    if settings.threshold_growth_per_drive and grown_mps > signal.range[1]:
+        file.fail(
+            ("drives", "threshold_growth_per_drive"),
+            f"{patient.id} would drive the last drive with {signal.name} = {grown_mps:.4g}, more "
+            f"than {signal.range[1]:g}; choose less growth or fewer drives",
+        )
+
+
+def _refuse(file: TomlFile, keys: tuple[str, ...], tables: tuple[str, ...], beside: str) -> None:
+    """Fail if one of these is given, since ``beside`` says it all."""
+    for key in keys:
+        if key in file.table["participants"]:
+            file.fail(("participants", key), f"not together with {beside}, which says it all")
+    for table in tables:
+        if table in file.table:
+            file.fail((table,), f"not together with {beside}")
+
+
+def _distribution(file: TomlFile) -> Distribution:
+    table = file.table.get("distribution", {})
+    for name, law in table.items():
+        try:
+            read_distribution({name: law})
+        except ModelError as problem:
+            file.fail(("distribution", name), str(problem))
+    return read_distribution(table)
