@@ -8,7 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pldf.analysis.analysis import analyse
+from pldf.analysis.drives_table import read_drives
 from pldf.analysis.published import PUBLISHED
+from pldf.analysis.study_folder import StudyFolder
 from pldf.study.drive_row import DriveRow
 from pldf.study.population import Distribution, read_distribution, sample_participants
 from pldf.study.study_file import study_path
@@ -69,14 +72,70 @@ def test_the_fit_starts_from_the_starting_values_and_repeats() -> None:
     assert first[2] > 10.0
 
 
-def test_tables_show_means_tests_and_drives() -> None:
+def two_systems() -> predict_study.Predicted:
+    """Return three studies in which all rates fall, and two people never use the lever."""
     rates = np.zeros((3, 43, 4, 3))
     rates[..., :2, :] = np.linspace(20.0, 40.0, 43)[:, None, None]
     rates[..., 2:, :] = 10.0 + np.linspace(0.0, 1.0, 43)[::-1, None, None]
-    text = predict_study.tables(rates)
-    assert "| pedal | 22.32 | 30.00 [30.00, 30.00] | 12.04 | 10.50 [10.50, 10.50] |" in text
-    assert "| combined | W = 1 | 0.00 [0.00, 0.00] |" in text
-    assert "| set speed, drivers who fell | | 43 [43, 43] |" in text
+    rates[:, :2, :, 1] = 0.0
+    return predict_study.Predicted(rates)
+
+
+def test_tables_show_paper_and_models_side_by_side() -> None:
+    fell = two_systems()
+    same = predict_study.Predicted(np.full_like(fell.rates, 25.0))
+    text = predict_study.tables(
+        {"constant_wish": same, "varying_wish": fell, "person_and_place": fell}
+    )
+    assert "| rate % | paper | one wish for ever | wish that varies |" in text
+    assert "| pedal, A | 22.32 | 25.00 [25.00, 25.00] | 30.00 [30.00, 30.00] |" in text
+    assert "| pedal, B | 12.04 | 25.00 [25.00, 25.00] | 10.50 [10.50, 10.50] |" in text
+    assert "| pedal, fall from A to B | 10.28 | 0.00 [0.00, 0.00] | 19.50 [19.50, 19.50] |" in text
+    assert "| pedal, Cohen's d_z | 0.98 | 0.00 [0.00, 0.00] |" in text
+    assert "| combined | W = 1 | 0.0 [0.0, 0.0] | 0.0 [0.0, 0.0] |" in text
+    assert "| set speed, drivers who fell | 35 to 40 | 0 [0, 0] | 41 [41, 41] |" in text
+    assert "| set speed, drivers without difference | 2 | 43 [43, 43] | 2 [2, 2] |" in text
+    assert "| drivers who never use the lever | 2 | 0 [0, 0] | 2 [2, 2] |" in text
+    assert "| pedal | wish that varies | 30.00 [30.00, 30.00] | 30.00" in text
+    assert "| paper | 22.32 | 12.04 | 39.76 | 12.42 | 54.68 | 22.97 | 0.98 | 35 to 40 | 2 |" in text
+    (split,) = (line for line in text.splitlines() if line.startswith("| person and place |"))
+    assert split.endswith("| 41 [41, 41] | 2 [2, 2] |")
+
+
+def test_a_variance_split_otherwise_stays_the_same_in_total() -> None:
+    rule = dict(zip(("person", "place", "occasion"), (3.5, 2.8, 2.2), strict=True))
+    names = [kind.format(part) for kind in predict_study.KINDS for part in rule]
+    table = dict(zip(names, (*rule.values(), 0.2, 0.1, 0.05), strict=True))
+    expected = {
+        "person_and_occasion": [49 / 68, 0.0, 19 / 68],
+        "person_and_place": [49 / 81, 32 / 81, 0.0],
+        "twice_the_occasion": [0.62 * 49 / 81, 0.62 * 32 / 81, 0.38],
+    }
+    assert list(expected) == list(predict_study.SPLITS)
+    for split, shares in predict_study.SPLITS.items():
+        other = predict_study.split_otherwise({**table, "wish.offset_mps": 2.0}, shares)
+        for kind in (names[:3], names[3:]):
+            variances = np.array([other[name] ** 2 for name in kind])
+            assert variances.sum() == pytest.approx(sum(table[name] ** 2 for name in kind))
+            np.testing.assert_allclose(variances / variances.sum(), expected[split])
+        assert other["wish.offset_mps"] == 2.0
+
+
+def test_a_model_is_driven_and_its_folder_can_be_analysed(tmp_path: Path) -> None:
+    predict_study.drive_all({"old": population()["distribution"]}, tmp_path, studies=1, jobs=1)
+    rows = read_drives(tmp_path / "old" / "drives.csv")
+    predicted = predict_study.Predicted(predict_study.rates_of(rows))
+    assert predicted.rates.shape == (1, 43, 4, 3)
+    analysis = analyse(StudyFolder(tmp_path / "old"))
+    for k, measure in enumerate(predict_study.MEASURES):
+        for at, system in enumerate("AB"):
+            np.testing.assert_allclose(
+                predicted.per_person[0, :, at, k], 100.0 * analysis.per_participant(measure, system)
+            )
+        (compared,) = predicted.compared(k)
+        assert compared.fell == analysis.comparisons[measure].fell
+    set_speed = sum(analysis.per_participant("set_speed", system) for system in "AB")
+    assert predicted.without_lever() == [np.count_nonzero(set_speed == 0.0)]
 
 
 def test_studies_have_different_people_with_numbers_of_their_own() -> None:
