@@ -14,8 +14,10 @@ from . import (
     chance,
     clock,
     driver_kernel,
+    normal,
     pedal_kernel,
     script_kernel,
+    variation_kernel,
     wish_kernel,
 )
 from .driver_kernel import driver_start, driver_step
@@ -30,8 +32,10 @@ KERNELS: Final = (
     chance,
     clock,
     driver_kernel,
+    normal,
     pedal_kernel,
     script_kernel,
+    variation_kernel,
     wish_kernel,
 )
 

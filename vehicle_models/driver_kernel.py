@@ -153,7 +153,7 @@ def _watch(st: DriverState, wish: WishArrays, passed_ns: int) -> None:
     st.settled_ns = st.settled_ns + passed_ns if _is_settled(st) else 0
     if _lever_will_do(st, wish):
         _follow_urge(st, 0, passed_ns)
-        _tip(st)
+        _tip(st, wish)
     else:
         st.tipping = 0
         _follow_urge(st, _urge(st, wish), passed_ns)
@@ -210,11 +210,11 @@ def _lever_will_do(st: DriverState, wish: WishArrays) -> bool:
     if st.driver_uses_lever == 0 or st.limit_mps <= 0.0 or st.mode != ACTIVE or is_blocked(st):
         return False
     needed = 0.5 * st.driver_lever_step_mps if st.tipping != 0 else st.driver_threshold_mps
-    if abs(_set_speed_error(st)) <= max(needed, 0.5 * st.driver_lever_step_mps):
+    if abs(_set_speed_error(st, wish)) <= max(needed, 0.5 * st.driver_lever_step_mps):
         return False
     i = cell_at(len(wish.limit_end_m), st.vehicle_s_m)
     speed = st.vehicle_speed_mps
-    plateau = st.limit_mps + st.wish_offset_mps
+    plateau = st.limit_mps + wish.offset_mps[i]
     return (
         abs(wish.wish_mps[i] - plateau) < PLATEAU_MARGIN_MPS
         and wish.limit_end_m[i] - st.vehicle_s_m > speed * st.driver_lever_limit_s
@@ -222,16 +222,17 @@ def _lever_will_do(st: DriverState, wish: WishArrays) -> bool:
     )
 
 
-def _set_speed_error(st: DriverState) -> float:
-    return st.limit_mps + st.wish_offset_mps - st.set_speed_mps
+def _set_speed_error(st: DriverState, wish: WishArrays) -> float:
+    offset = wish.offset_mps[cell_at(len(wish.offset_mps), st.vehicle_s_m)]
+    return st.limit_mps + offset - st.set_speed_mps
 
 
-def _tip(st: DriverState) -> None:
+def _tip(st: DriverState, wish: WishArrays) -> None:
     """Tip the lever after a while of steady cruise; further tips follow in rhythm."""
     cruising = st.settled_ns >= to_ns(st.driver_lever_settled_s)
     if st.button_ns >= TIP_NS and (cruising or st.tipping != 0):
         st.tipping = 1
-        _press(st, UP_LONG if _set_speed_error(st) > 0.0 else DOWN_LONG)
+        _press(st, UP_LONG if _set_speed_error(st, wish) > 0.0 else DOWN_LONG)
 
 
 def _press(st: DriverState, control: int) -> None:

@@ -7,7 +7,7 @@ decisions, explained in ``docs/vehicle.md``.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from pldf.kernel.codes import MODE
 from pldf.kernel.ranges import flag, nanoseconds, number, whole
@@ -46,6 +46,19 @@ class DriverTexts:
     route_file: str = text_parameter("Route, instead of the packed one of route_id")
 
 
+def _offset_sd(how: str) -> Any:
+    return real_parameter(
+        f"Standard deviation of the wished offset {how}", "m/s", start=0.0, low=0.0, high=20.0
+    )
+
+
+def _lateral_sigma(how: str) -> Any:
+    return real_parameter(
+        f"Standard deviation of the logarithm of the accepted lateral acceleration {how}",
+        "", start=0.0, low=0.0, high=1.0,
+    )  # fmt: skip
+
+
 @dataclass
 class WishParameters:
     """Which driver, on which route, with which hidden wish."""
@@ -61,7 +74,10 @@ class WishParameters:
         "Index of the packed route, 0 = the shipped study road", start=0, low=0, high=999
     )
     seed: int = count_parameter(
-        "Seed of the driver's small irregularities", start=1, low=0, high=999_999_999
+        "Seed of this drive: small irregularities, and the occasion's part of the wish",
+        start=1,
+        low=0,
+        high=999_999_999,
     )
     wish_offset_mps: float = real_parameter(
         "Wished speed above the legal limit where nothing else binds",
@@ -81,6 +97,32 @@ class WishParameters:
     )
     wish_anticipation_s: float = real_parameter(
         "Time before the sign at which a higher limit counts", "s", start=2.0, low=0.0, high=20.0
+    )
+    person_seed: int = since(
+        "0.3",
+        count_parameter(
+            "Seed of what lasts: how this person's wish differs from the usual one, and from place "
+            "to place",
+            start=1, low=0, high=999_999_999, name="person_seed",
+        ),
+    )  # fmt: skip
+    wish_offset_person_sd_mps: float = since(
+        "0.3", _offset_sd("from person to person, for good (person_seed)")
+    )
+    wish_offset_place_sd_mps: float = since(
+        "0.3", _offset_sd("of one person from limit to limit, for good (person_seed)")
+    )
+    wish_offset_occasion_sd_mps: float = since(
+        "0.3", _offset_sd("from drive to drive (seed), half of the variance limit by limit")
+    )
+    wish_lateral_person_sigma: float = since(
+        "0.3", _lateral_sigma("from person to person, for good (person_seed)")
+    )
+    wish_lateral_place_sigma: float = since(
+        "0.3", _lateral_sigma("of one person from curve to curve, for good (person_seed)")
+    )
+    wish_lateral_occasion_sigma: float = since(
+        "0.3", _lateral_sigma("from drive to drive (seed), half of the variance curve by curve")
     )
 
 

@@ -12,6 +12,7 @@ from pldf.kernel.arrays import Floats, RouteArrays, Work
 from pldf.kernel.planner import find_limit_ends, plan_profile, speed_caps
 
 from .driver_state import DriverState
+from .variation_kernel import fill_lateral_accels, fill_offsets
 
 # A wish below walking pace would stop the car at a very negative offset.
 SLOWEST_MPS = 2.0
@@ -21,6 +22,7 @@ class WishArrays(NamedTuple):
     """What the driver knows of the route."""
 
     wish_mps: Floats  # node: wished speed
+    offset_mps: Floats  # cell: wished speed above the legal limit where nothing else binds
     limit_end_m: Floats  # node: position of the next change of the legal limit
     straight_end_m: Floats  # node: end of the straight road (the node itself: not straight)
 
@@ -31,19 +33,27 @@ def prepare_wish(st: DriverState, route: RouteArrays, wish: WishArrays, work: Wo
     st.planner_accel_min_mps2 = st.wish_accel_min_mps2
     st.planner_jerk_max_mps3 = st.wish_jerk_max_mps3
     find_limit_ends(route.limit_mps, wish.limit_end_m)
-    _fill_plateau(st, route.limit_mps, work.d)
+    fill_offsets(st, route.limit_mps, wish.offset_mps)
+    _fill_plateau(st, route.limit_mps, wish.offset_mps, work.d)
+    _fill_bends(st, route.curvature_per_m, work.e)
     for i in range(len(work.c)):
         work.c[i] = 0.0
-    lateral = st.wish_lateral_accel_max_mps2
-    speed_caps(wish.wish_mps, work.d, work.c, route.curvature_per_m, lateral)
+    speed_caps(wish.wish_mps, work.d, work.c, work.e, st.wish_lateral_accel_max_mps2)
     plan_profile(st, wish.wish_mps, wish.wish_mps, work)
     _fill_straight_ends(st, route.curvature_per_m, wish.straight_end_m)
 
 
-def _fill_plateau(st: DriverState, limit: Floats, plateau: Floats) -> None:
+def _fill_bends(st: DriverState, curvature: Floats, bend: Floats) -> None:
+    """Curvature (per cell) that feels at the usual lateral acceleration as this one does here."""
+    fill_lateral_accels(st, curvature, bend)
+    for i in range(len(curvature)):
+        bend[i] = curvature[i] * (st.wish_lateral_accel_max_mps2 / bend[i])
+
+
+def _fill_plateau(st: DriverState, limit: Floats, offset: Floats, plateau: Floats) -> None:
     """Wished speed where only limits bind (per cell): higher limits count before their sign."""
     for i in range(len(limit)):
-        plateau[i] = max(limit[i] + st.wish_offset_mps, SLOWEST_MPS)
+        plateau[i] = max(limit[i] + offset[i], SLOWEST_MPS)
     for sign in range(1, len(limit)):
         if limit[sign] > limit[sign - 1]:
             _anticipate(st, limit, plateau, sign)
@@ -52,8 +62,8 @@ def _fill_plateau(st: DriverState, limit: Floats, plateau: Floats) -> None:
 def _anticipate(st: DriverState, limit: Floats, plateau: Floats, sign: int) -> None:
     """Let the limit from cell ``sign`` on count earlier, but not before the limit it ends."""
     before = limit[sign - 1]
-    reach = st.wish_anticipation_s * max(before + st.wish_offset_mps, SLOWEST_MPS)
-    raised = max(limit[sign] + st.wish_offset_mps, SLOWEST_MPS)
+    reach = st.wish_anticipation_s * plateau[sign - 1]
+    raised = plateau[sign]
     i = sign - 1
     while i >= 0 and sign - i <= reach and limit[i] == before:
         plateau[i] = raised

@@ -135,7 +135,7 @@ def drive(  # noqa: PLR0913 - the options of a drive, all by name
         store: folder of learned profiles; None: the environment variable ``PLDF_PROFILE_STORE``,
             and if there is none, nothing is loaded or kept.
         driver_id: whose profile.
-        seed: of the driver's small irregularities.
+        seed: of the drive: the driver's small irregularities and the occasion's part of the wish.
         fmus: folder of the FMUs; None: ``dist``, and if nobody has built any, they are built into
             the user's cache.
         parameters: of the FMUs, as ``--set`` takes them, e.g. ``{"wish.offset_mps": 2.0}``.

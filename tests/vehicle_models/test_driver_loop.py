@@ -24,6 +24,8 @@ from vehicle_models.vehicle import LongitudinalVehicle
 from vehicle_models.wish_kernel import WishArrays
 
 MODULES = (*KERNELS, interpolation, substeps, planner)
+# How many of the driver's arrays are the wish; the script is behind it.
+WISH = len(WishArrays._fields)
 SEEN = ("mode", "target_speed_mps", "set_speed_mps", "limit_mps")
 # The wish of a driver who wants exactly what the driving function does by default.
 LIKE_THE_FUNCTION: dict[str, float] = {
@@ -159,20 +161,31 @@ def test_state_is_saved_and_restored_to_the_bit(tmp_path: Path) -> None:
     assert twin.snapshot() == someone.snapshot()
 
 
-def test_compiled_kernel_equals_cpython_to_the_bit() -> None:
+VARIED = {
+    "wish_offset_person_sd_mps": 1.0,
+    "wish_offset_place_sd_mps": 0.8,
+    "wish_offset_occasion_sd_mps": 0.6,
+    "wish_lateral_person_sigma": 0.2,
+    "wish_lateral_place_sigma": 0.1,
+    "wish_lateral_occasion_sigma": 0.1,
+}
+
+
+@pytest.mark.parametrize("variation", [{}, VARIED], ids=["constant", "varied"])
+def test_compiled_kernel_equals_cpython_to_the_bit(variation: dict[str, float]) -> None:
     compiled = compile_modules(MODULES)
     plain = default_drive().driver
-    fresh = driver(driver_spread=0.3)
-    wish = WishArrays(*(np.zeros_like(a) for a in fresh.arrays[:3]))
+    fresh = driver(driver_spread=0.3, person_seed=7, **variation)
+    wish = WishArrays(*(np.zeros_like(a) for a in fresh.arrays[:WISH]))
     function = default_drive().function
     work = zeros(Work, len(wish.wish_mps))
     routes = RouteArrays(*(np.array(a) for a in function.route))
     packed = pack(fresh.record)
     compiled["prepare_wish"](packed[0], routes, wish, work)
-    for ours, theirs in zip(fresh.arrays[:3], wish, strict=True):
+    for ours, theirs in zip(fresh.arrays[:WISH], wish, strict=True):
         assert np.array_equal(ours, np.asarray(theirs))
     packed = pack(fresh.record)
-    blank = ScriptArrays(*(np.array(a) for a in plain.arrays[3:]))
+    blank = ScriptArrays(*(np.array(a) for a in plain.arrays[WISH:]))
     rng, twin = np.random.default_rng(3), replace(fresh.record)
     for k in range(2000):
         if k % 40 == 0:
@@ -196,8 +209,8 @@ def test_compiled_script_equals_cpython_to_the_bit() -> None:
     compiled = compile_modules(MODULES)
     someone = driver(kind=1)
     packed, twin = pack(someone.record), replace(someone.record)
-    wish = WishArrays(*(np.array(a) for a in someone.arrays[:3]))
-    events = ScriptArrays(*(np.array(a) for a in someone.arrays[3:]))
+    wish = WishArrays(*(np.array(a) for a in someone.arrays[:WISH]))
+    events = ScriptArrays(*(np.array(a) for a in someone.arrays[WISH:]))
     for k in range(4000):
         someone.record.vehicle_s_m = packed[0]["vehicle_s_m"] = float(k)
         someone.step(0.03)

@@ -29,6 +29,7 @@ DRIVES: Final = Format(
         Column("combined_rate", low=0.0, high=1.0, wanted=_SHARE),
         Column("interventions", "whole", low=0.0, needed=False, blank=True),
         Column("wish_error_mps", unit="m/s", needed=False, blank=True),
+        Column("drive_wish_error_mps", unit="m/s", needed=False, blank=True),
     ),
     key=("participant", "phase"),
 )
@@ -49,7 +50,8 @@ class DriveRow:
         duration_s: time from the first to the last sample.
         interventions: number of pedal interventions.
         wish_error_mps: root mean square over the route's metres of the profile followed minus the
-            driver's hidden wish; simulated drivers only.
+            driver's lasting hidden wish; simulated drivers only.
+        drive_wish_error_mps: the same against the wish of this drive.
         where: file, and line if it has several drives, that the row was read from.
     """
 
@@ -62,6 +64,7 @@ class DriveRow:
     duration_s: float = nan
     interventions: float = nan
     wish_error_mps: float = nan
+    drive_wish_error_mps: float = nan
     where: str = field(default="", compare=False)
 
     @property

@@ -16,7 +16,9 @@ from .drive_row import DriveRow
 _Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 _Amount = Annotated[float, Meta(ge=0.0)]
 # The columns of ``drives.csv``.
-_Row = tuple[str, str, Literal["A", "B"], int, _Amount, _Share, _Share, _Share, _Amount, float]
+_Row = tuple[
+    str, str, Literal["A", "B"], int, _Amount, _Share, _Share, _Share, _Amount, float, float
+]
 _WHAT: Final = "not the drives of this participant in this study"
 
 

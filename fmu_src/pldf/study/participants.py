@@ -19,7 +19,7 @@ from ..roads import Road, Route
 from .drive_row import DriveRow
 from .phases import Phase
 
-_OF_THE_DRIVE: Final = ("kind", "script_id", "route_id", "seed")
+_OF_THE_DRIVE: Final = ("kind", "script_id", "route_id", "seed", "person_seed")
 # The parameters of the driver model that make one driver differ from another, by field.
 DRIVER_SIGNALS: Final[dict[str, Signal]] = {
     signal.field: signal
@@ -34,7 +34,8 @@ class Participant:
 
     Attributes:
         id: P and the number in the study: P001.
-        seed: of the driver's small irregularities in the first drive; see ``seed_of_drive``.
+        seed: of what lasts in the driver's wish (``person_seed``), and of the first drive; see
+            ``seed_of_drive``.
         values: parameters by field of ``DriverState``; those absent keep their defaults.
     """
 

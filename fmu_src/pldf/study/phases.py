@@ -71,11 +71,12 @@ class DriveSetting:
         route: the route, for all FMUs.
         road: the parameters that make the FMUs use this route.
         driver_id: whose profile.
-        seed: of the driver's small irregularities, and of traffic.
+        seed: of the drive: the driver's small irregularities and occasion's wish, and traffic.
         store: folder of profiles; None: the environment decides.
         more: further values by part; they win.
         traffic: values of the car ahead; None: there is none.
         learn: how the drives learn that do (LEARN in ``kernel.codes``).
+        person_seed: of what lasts in the driver's wish.
     """
 
     route: Route
@@ -86,6 +87,7 @@ class DriveSetting:
     more: Values = field(default_factory=dict)
     traffic: Mapping[str, Value] | None = None
     learn: int = LEARN_FAITHFUL
+    person_seed: int = 1
 
     @property
     def length_m(self) -> float:
@@ -116,6 +118,7 @@ def values_of(phase: Phase, setting: DriveSetting) -> dict[str, dict[str, Value]
             **setting.road,
             "kind": PREFERENCE if phase.intervenes else HANDS_OFF,
             "seed": setting.seed,
+            "person_seed": setting.person_seed,
         },
     }
     if setting.traffic is not None:

@@ -10,7 +10,7 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import cache, lru_cache
 from math import ceil
-from typing import Any, Final, NamedTuple, cast
+from typing import Any, Final, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,10 +39,10 @@ from ..recordings.recording import Recording
 from ..roads import fingerprint, route_arrays
 from ..route_facts import route_facts
 from . import loop
-from .drive_row import DriveRow
 from .loop import ARRIVED, STOOD_STILL, Ends, ModelArrays, Models, Rows
 from .participants import DriveResult, Participant, StudySettings, order_of
-from .phases import HANDS_OFF, PHASES, PREFERENCE, SCRIPT, Phase, seed_of_drive
+from .person import Person, row_of_drive, wish_errors
+from .phases import PHASES, Phase
 
 Packed = NDArray[np.void]
 
@@ -126,15 +126,28 @@ class Simulation:
         return StoredProfile(participant.number, self.fingerprint, np.array(self.base.base_mps))
 
     def person(self, participant: Participant) -> Person:
-        """Return the driver model of ``participant`` with the wish planned."""
+        """Return the driver model of ``participant`` with the lasting wish planned."""
         model = ScriptedDriver()
         for name in participant.values:
             setattr(model.record, name, participant.value(name))
+        model.record.person_seed = participant.seed
         _check_parameters_of(model, f"participant {participant.id}")
-        wish = zeros(WishArrays, self.nodes)
         st = pack(model.record)
-        self.code["prepare_wish"](st[0], self.route, wish, zeros(Work, self.nodes))
-        return Person(participant, model, wish, zeros(ScriptArrays, 0))
+        st["wish_offset_occasion_sd_mps"] = st["wish_lateral_occasion_sigma"] = 0.0
+        return Person(participant, model, self._planned(st), zeros(ScriptArrays, 0))
+
+    def wish_of_drive(self, person: Person, number: int) -> WishArrays:
+        """Return what ``person`` wishes in the drive with this number, from 0."""
+        if person.is_always_the_same:
+            return person.wish
+        st = pack(person.model.record)
+        st["seed"] = person.seed_of(number)
+        return self._planned(st)
+
+    def _planned(self, driver: Packed) -> WishArrays:
+        wish = zeros(WishArrays, self.nodes)
+        self.code["prepare_wish"](driver[0], self.route, wish, zeros(Work, self.nodes))
+        return wish
 
     def followed(self, stored: StoredProfile, phase: Phase) -> ProfileArrays:
         """Return new arrays with the profile that a drive of ``phase`` follows."""
@@ -150,7 +163,7 @@ class Simulation:
     ) -> DriveResult:
         """Drive ``phase`` as the drive with this number, from 0, following ``stored``."""
         arrays = ModelArrays(
-            wish=person.wish,
+            wish=self.wish_of_drive(person, number),
             script=person.script,
             route=self.route,
             profile=self.followed(stored, phase),
@@ -171,7 +184,12 @@ class Simulation:
         unpack(pldf, st)
         return DriveResult(
             row=row_of_drive(
-                person, phase, number + 1, (steps - 1) * ends.step_s, st, arrays.profile
+                person,
+                phase,
+                number,
+                (steps - 1) * ends.step_s,
+                st,
+                wish_errors(arrays.profile, person.wish, arrays.wish),
             ),
             recording=_recording(rows, steps, ends.step_s) if kept else None,
             iteration=self._learn(pldf, arrays, stored) if phase.learn else None,
@@ -193,46 +211,6 @@ class Simulation:
         record = PldfState()
         unpack(st, record)
         return next_iteration(record, arrays.profile, following, stored)
-
-
-class Person(NamedTuple):
-    """A participant with the driver model, and the wished speed or a script to follow."""
-
-    participant: Participant
-    model: ScriptedDriver
-    wish: WishArrays
-    script: ScriptArrays
-
-    def packed(self, phase: Phase, number: int) -> Packed:
-        """Return the driver's record for the drive with this number, from 0."""
-        st = pack(self.model.record)
-        kind = SCRIPT if len(self.script.at) else PREFERENCE
-        st["kind"] = kind if phase.intervenes else HANDS_OFF
-        st["seed"] = seed_of_drive(self.participant.seed, number)
-        return st
-
-
-def row_of_drive(
-    person: Person,
-    phase: Phase,
-    position: int,
-    duration_s: float,
-    outputs: PldfState,
-    followed: ProfileArrays,
-) -> DriveRow:
-    """Return the row of the drive at ``position``, from 1, with the function's last outputs."""
-    missed = np.asarray(followed.learned_mps) - np.asarray(person.wish.wish_mps)
-    return DriveRow(
-        participant=person.participant.id,
-        phase=phase.name,
-        position=position,
-        duration_s=duration_s,
-        pedal_rate=outputs.rate_pedal,
-        set_speed_rate=outputs.rate_set_speed,
-        combined_rate=outputs.rate_combined,
-        interventions=outputs.drive_interventions,
-        wish_error_mps=float(np.sqrt(np.mean(missed * missed))),
-    )
 
 
 def set_parameters(model: Instance[Any], values: Mapping[str, Value]) -> None:

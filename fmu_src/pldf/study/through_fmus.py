@@ -16,8 +16,9 @@ from ..kernel.state import PldfState
 from ..profiles.store import ProfileStore
 from ..profiles.stored_profile import StoredProfile
 from .participants import DRIVER_SIGNALS, DriveResult, Participant, StudySettings, order_of
-from .phases import DriveSetting, Phase, seed_of_drive, values_of
-from .simulation import prepared, row_of_drive
+from .person import row_of_drive, wish_errors
+from .phases import DriveSetting, Phase, values_of
+from .simulation import prepared
 
 # Called now and then with the number of this participant's drives that are done, 2.5 for example.
 Watch = Callable[[float], None]
@@ -55,6 +56,7 @@ class _Driver:
             route=settings.route,
             road=road_values(settings.road, folder),
             driver_id=participant.number,
+            person_seed=participant.seed,
             store=folder,
             learn=settings.learn,
             more={
@@ -69,10 +71,11 @@ class _Driver:
         participant = self._person.participant
         setting = replace(
             self._setting,
-            seed=seed_of_drive(participant.seed, number),
+            seed=self._person.seed_of(number),
             more={**self._setting.more, "driver": self._described(number)},
         )
         followed = self._simulation.followed(self._stored(), phase)
+        wish = self._simulation.wish_of_drive(self._person, number)
         done = drive(
             self._fmus,
             values_of(phase, setting),
@@ -83,7 +86,14 @@ class _Driver:
         _require_good(f"participant {participant.id}, drive {phase.name}", done)
         duration_s = float(done.recording["time_s"][-1])
         return DriveResult(
-            row=row_of_drive(self._person, phase, number + 1, duration_s, _outputs(done), followed),
+            row=row_of_drive(
+                self._person,
+                phase,
+                number,
+                duration_s,
+                _outputs(done),
+                wish_errors(followed, self._person.wish, wish),
+            ),
             recording=done.recording if participant.id in self._settings.recorded else None,
             iteration=self._stored().iterations[-1] if phase.learn else None,
             warnings=tuple(m for m in done.messages if m.level == "warning"),

@@ -32,7 +32,7 @@ def add_coupling(parser: Parser) -> None:
     )
     parser.add_argument(
         "--seed", type=_whole, default=1, metavar="N",
-        help="seed of the driver's small irregularities (default: 1)",
+        help="seed of the drive: small irregularities of the driver, and traffic (default: 1)",
     )  # fmt: skip
     parser.add_argument(
         "--step", type=_step, default=STEP_S, metavar="S",
