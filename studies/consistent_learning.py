@@ -273,7 +273,7 @@ def _lines(rows: Sequence[Row], name: str) -> Iterator[Line]:
 def main() -> int:
     """Drive, print, write, draw."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    fitted = Path(__file__).with_name("population.toml")
+    fitted = Path(__file__).with_name("population_constant_wish.toml")
     parser.add_argument("--out", type=Path, default=Path("out/consistent"))
     parser.add_argument("--people", type=int, default=43)
     parser.add_argument("--drives", type=int, default=10)

@@ -74,7 +74,7 @@ def summary(stretch: float, drive: int, rows: Sequence[DriveRow]) -> Summary:
 def main() -> int:
     """Drive, write, draw."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    fitted = Path(__file__).with_name("population.toml")
+    fitted = Path(__file__).with_name("population_constant_wish.toml")
     parser.add_argument("--out", type=Path, default=Path("out/long_run"))
     parser.add_argument("--people", type=int, default=43)
     parser.add_argument("--drives", type=int, default=30)

@@ -271,15 +271,15 @@ def drive_all(populations: Mapping[str, Table], out: Path, studies: int, jobs: i
 def main() -> int:
     """Drive and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    constant, varying = (
-        Path(__file__).with_name(f"{name}.toml")
-        for name in ("population_constant_wish", "population")
-    )
+    here = Path(__file__).parent
+    constant, varying = here / "population_constant_wish.toml", here / "population.toml"
     parser.add_argument("--studies", type=int, default=20)
     parser.add_argument("--out", type=Path, default=Path("out/prediction"), help="folder")
     parser.add_argument("--tables", action="store_true", help="of what is in --out; drive nothing")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="processes")
     options = parser.parse_args()
+    if not varying.exists():
+        parser.error(f"{varying} is not there: python studies/fit_population.py makes it")
     populations = models(
         *(tomllib.loads(file.read_text())["distribution"] for file in (constant, varying))
     )
