@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import pytest
 from pldf.errors import ModelError
 from pldf.kernel.codes import LEARN_CONSISTENT
-from pldf.roads import packed_route, write_route_csv
+from pldf.roads import fingerprint, packed_route, write_route_csv
 from pldf.study.participants import DRIVER_SIGNALS
 from pldf.study.participants_file import participants_csv, read_participants
 from pldf.study.phases import PHASES
 from pldf.study.population import sample_participants
 from pldf.study.study_file import PACKAGED, Study, read_study, study_path
 from pldf.toml_file import line_of
+
+from studies import fit_population
 
 PAPER = study_path("paper")
 
@@ -29,7 +32,7 @@ def test_the_papers_study() -> None:
     assert len(paper.participants) == 43
     assert [phase.name for phase in paper.settings.phases] == ["A1", "A2", "A3", "B1", "B2", "B3"]
     assert not paper.settings.counterbalanced
-    assert paper.settings.recorded == {"P001"}
+    assert len(paper.settings.recorded) == 1  # who it is: test_typical.py
     assert paper.settings.step_s == 0.01
     assert paper.out == Path("out/paper")
     assert paper.source == PAPER.read_text(encoding="utf-8")
@@ -233,3 +236,15 @@ def test_errors_in_participants_name_line_and_column(tmp_path: Path, text: str) 
     with pytest.raises(ModelError) as caught:
         read_participants(path)
     assert CSV_ERRORS[text] in str(caught.value)
+
+
+def test_the_old_model_is_kept_beside_the_papers_study() -> None:
+    old = tomllib.loads(study_path("paper_constant_wish").read_text(encoding="utf-8"))
+    fitted = Path(fit_population.__file__).with_name("population_constant_wish.toml")
+    assert old["distribution"] == tomllib.loads(fitted.read_text(encoding="utf-8"))["distribution"]
+    settings = read_study(study_path("paper_constant_wish")).settings
+    paper = read_study(PAPER).settings
+    assert settings.phases == paper.phases
+    assert fingerprint(settings.route) == fingerprint(paper.route)
+    assert settings.step_s == paper.step_s
+    assert settings.function == paper.function == {}

@@ -90,7 +90,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--plot", type=Path, metavar="PNG", help="picture (default: beside the recording)"
     )
-    add_coupling(parser)
+    add_coupling(
+        parser, 1, "the drive: small irregularities of the driver, and traffic (default: 1)"
+    )
     add_fmu(parser, NATIVE_IF_GOOD)
     parser.set_defaults(wrong_usage=parser.error)
 

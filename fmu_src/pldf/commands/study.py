@@ -81,7 +81,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     one_driver = parser.add_argument_group(
         "without FILE", "written into the study file of the one driver, beside the results"
     )
-    add_coupling(one_driver)
+    add_coupling(
+        one_driver, None, "the driver: what lasts in the wish, and the drives (default: the file's)"
+    )
     usual = {name: parser.get_default(name) for name in _OF_ONE_DRIVER}
     parser.set_defaults(refuse=parser.error, usual=usual)
 

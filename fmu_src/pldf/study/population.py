@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from difflib import get_close_matches
-from math import exp
+from math import exp, inf, log, sqrt
 from statistics import NormalDist
 from typing import Any, Final, Protocol
 
@@ -35,6 +35,9 @@ class Law(Protocol):
     def at(self, u: float) -> float:
         """Return the quantile of ``u``, which is above 0 and below 1."""
 
+    def deviation(self, value: float) -> float:
+        """Return how far ``value`` lies above the median, in standard deviations."""
+
 
 SIGMA_MAX: Final = 10.0  # one sigma off is 22,000 times the median then: nobody is like that
 
@@ -51,6 +54,10 @@ class Normal:
     def at(self, u: float) -> float:
         """Return the quantile of ``u``."""
         return min(max(self.mean + self.sd * STANDARD.inv_cdf(u), self.low), self.high)
+
+    def deviation(self, value: float) -> float:
+        """Return the deviation of ``value`` from the median."""
+        return (value - self.mean) / self.sd if self.sd > 0.0 else 0.0
 
 
 @dataclass(frozen=True)
@@ -70,6 +77,13 @@ class Lognormal:
         """Return the quantile of ``u``."""
         return min(max(self.median * exp(self.sigma * STANDARD.inv_cdf(u)), self.low), self.high)
 
+    def deviation(self, value: float) -> float:
+        """Return the deviation of the logarithm of ``value`` from that of the median."""
+        if self.sigma == 0.0 or value == self.median:
+            return 0.0
+        ratio = value / self.median if self.median else inf
+        return log(ratio) / self.sigma if ratio > 0.0 else -inf  # an end at or beyond 0
+
 
 @dataclass(frozen=True)
 class Uniform:
@@ -82,6 +96,11 @@ class Uniform:
         """Return the quantile of ``u``."""
         return self.low + (self.high - self.low) * u
 
+    def deviation(self, value: float) -> float:
+        """Return the deviation of ``value`` from the middle."""
+        width = self.high - self.low
+        return (value - 0.5 * (self.low + self.high)) / (width / sqrt(12.0)) if width else 0.0
+
 
 @dataclass(frozen=True)
 class Share:
@@ -92,6 +111,12 @@ class Share:
     def at(self, u: float) -> float:
         """Return 1 or 0 for ``u``."""
         return float(u < self.share)
+
+    def deviation(self, value: float) -> float:
+        """Return the deviation of ``value`` from what most people have."""
+        median = float(self.share >= 0.5)
+        variance = self.share * (1.0 - self.share)
+        return (value - median) / sqrt(variance) if variance > 0.0 else 0.0
 
 
 LAWS: Final = {"normal": Normal, "lognormal": Lognormal, "uniform": Uniform, "share": Share}

@@ -78,14 +78,15 @@ def read_study(path: Path, changes: Mapping[Key, Any] | None = None) -> Study:
     tables = file.read(StudyTables)
     notes: list[Finding] = []
     people = people_of(file, tables, notes)
+    road = _road(file, tables, typed=bool(changes))
     settings = StudySettings(
-        road=_road(file, tables, typed=bool(changes)),
+        road=road,
         phases=_phases(file, tables),
         counterbalanced=tables.drives.order == "counterbalanced",
         function=function_of(file),
         vehicle=parameters_of(file, "vehicle"),
         step_s=tables.drives.step_s,
-        recorded=recorded_of(file, tables, [person.id for person in people]),
+        recorded=recorded_of(file, tables, people, road.route),
         threshold_growth_per_drive=tables.drives.threshold_growth_per_drive,
     )
     check_thresholds(file, settings, people)

@@ -6,12 +6,14 @@ from collections.abc import Sequence
 
 from ..errors import ModelError
 from ..findings import Finding
+from ..roads import Route
 from ..toml_file import TomlFile, listed, shown
 from .participants import DRIVER_SIGNALS, Participant, StudySettings
 from .participants_file import read_participants
 from .population import Distribution, read_distribution, sample_participants
 from .study_parameters import SETTABLE, parameters_of
 from .study_tables import StudyTables
+from .typical import typical
 
 
 def people_of(file: TomlFile, tables: StudyTables, notes: list[Finding]) -> tuple[Participant, ...]:
@@ -30,11 +32,21 @@ def people_of(file: TomlFile, tables: StudyTables, notes: list[Finding]) -> tupl
     return tuple(sample_participants(table.count, table.seed, _distribution(file), table.first))
 
 
-def recorded_of(file: TomlFile, tables: StudyTables, known: list[str]) -> frozenset[str]:
+def recorded_of(
+    file: TomlFile, tables: StudyTables, people: Sequence[Participant], route: Route
+) -> frozenset[str]:
     """Return the ids of those whose recordings and profiles are kept."""
-    names = tables.recordings.participants
+    names, known = tables.recordings.participants, [person.id for person in people]
     if names == "all":
         return frozenset(known)
+    if names == "typical":
+        if tables.participants.file or tables.driver is not None:
+            file.fail(
+                ("recordings", "participants"),
+                '"typical" is who is nearest to the medians of [distribution], and these people '
+                'are not drawn; write "all" or a list of participants',
+            )
+        return frozenset({typical(people, _distribution(file), route).id})
     everybody = set(known)
     for name in names:
         if name not in everybody:

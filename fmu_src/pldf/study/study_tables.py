@@ -47,7 +47,8 @@ Limit = Annotated[
 ]
 Smoothing = Annotated[float, Meta(ge=0.0, le=1000.0, description="a number from 0 to 1000")]
 Recorded = Annotated[
-    list[str] | Literal["all"], Meta(description='"all" or a list of participants')
+    list[str] | Literal["all", "typical"],
+    Meta(description='"all", "typical" or a list of participants'),
 ]
 
 

@@ -24,15 +24,17 @@ from .settings import setting, split_settings
 NATIVE_IF_GOOD: Final = "native, if they are there for this platform and up to date"
 
 
-def add_coupling(parser: Parser) -> None:
-    """Add the arguments that say which FMUs drive, for whom, where and how."""
+def add_coupling(parser: Parser, seed: int | None, seed_of: str) -> None:
+    """Add the arguments that say which FMUs drive, for whom, where and how.
+
+    ``seed`` is usual, ``seed_of`` says what of.
+    """
     add_road(parser, default="study")
     parser.add_argument(
         "--driver-id", type=_whole, default=1, metavar="N", help="whose profile (default: 1)"
     )
     parser.add_argument(
-        "--seed", type=_whole, default=1, metavar="N",
-        help="seed of the drive: small irregularities of the driver, and traffic (default: 1)",
+        "--seed", type=_whole, default=seed, metavar="N", help=f"seed of {seed_of}",
     )  # fmt: skip
     parser.add_argument(
         "--step", type=_step, default=STEP_S, metavar="S",
