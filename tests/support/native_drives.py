@@ -212,6 +212,16 @@ CASES: Final = {
         "ScriptedDriver", {"kind": 2, "seed": 7, "driver.uses_lever": 1, "driver.spread": 0.5},
         driver_inputs,
     ),
+    "wish that varies": Case(
+        "ScriptedDriver",
+        {
+            "kind": 2, "seed": 7, "person_seed": 999_999_999, "driver.uses_lever": 1,
+            "wish.offset_person_sd_mps": 1.0, "wish.offset_place_sd_mps": 0.8,
+            "wish.offset_occasion_sd_mps": 0.6, "wish.lateral_person_sigma": 0.2,
+            "wish.lateral_place_sigma": 0.1, "wish.lateral_occasion_sigma": 0.1,
+        },
+        driver_inputs,
+    ),
 }  # fmt: skip
 
 
