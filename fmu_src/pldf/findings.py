@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final, Literal, NamedTuple, get_args
 
+import numpy as np
+
 # error: it cannot be used; warning: it can, but a number may not mean what one takes it for;
 # note: how it was read, or what was repaired.
 Severity = Literal["error", "warning", "note"]
@@ -43,6 +45,11 @@ class Finding(NamedTuple):
         return f"{self.where}: " + "; ".join(
             filter(None, (self.text, self.consequence, self.way_out))
         )
+
+
+def short(value: float) -> str:
+    """Return a number to three digits, as people read it: 1000, never 1e+03."""
+    return np.format_float_positional(value, precision=3, fractional=False, trim="-")
 
 
 def in_order(findings: Iterable[Finding]) -> list[Finding]:

@@ -137,6 +137,7 @@ def test_what_is_shorter_than_a_car_is_no_curve(
     assert np.max(np.abs(after[1])) < around_per_m + 1.1 * max(own * own / 4.0, abs(own) / 50.0)
     assert told.severity == "warning"
     assert "is no curve of a road" in told.text
+    assert re.search(r"; driven as (straight on|R \d+ m \(\d+ km/h\))$", told.text)
     assert told.place == "1000 m"
 
 

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from ...findings import Finding, Severity
+from ...findings import Finding, Severity, short
 from ...kernel.arrays import FloatArray
 from ...kernel.units import KMH_PER_MPS
 from .bending import CURVATURE, LIMIT, S, averaged, spans_of
@@ -90,14 +90,14 @@ def _turn(turn: Turn, knots: FloatArray) -> str:
 
 
 def _noise(noise: Noise, smoothing_m: float | None) -> tuple[str, Severity, str]:
-    before, after = (1.0 / max(k, 1e-9) for k in noise.sharpest_per_m)
-    sharpest = f"sharpest curve R {before:.3g} m before and R {after:.3g} m after"
+    before, after = (short(1.0 / max(k, 1e-9)) for k in noise.sharpest_per_m)
+    sharpest = f"sharpest curve R {before} m before and R {after} m after"
     length = noise.end_m - noise.start_m
     if smoothing_m is not None:
         return f"curvature smoothed over {noise.spacing_m:g} m; {sharpest}", "note", ""
     return (
         f"the curvature is noise over {length:.0f} m, {noise.sigma_per_m:.2g}/m between points"
-        f" {noise.spacing_m:.3g} m apart; smoothed, {sharpest}",
+        f" {short(noise.spacing_m)} m apart; smoothed, {sharpest}",
         "warning",
         "--smoothing M sets the length of the mean, --smoothing 0 leaves it as it is",
     )
@@ -109,7 +109,7 @@ def _spike(spike: Spike, knots: FloatArray) -> str:
     near = slice(*np.searchsorted(knots[S], (spike.start_m, spike.end_m + 1e-9)))
     left = float(np.max(np.abs(knots[CURVATURE, near]), initial=0.0))
     return (
-        f"R {1.0 / spike.curvature_per_m:.3g} m over {length:.2g} m ({_degrees(angle)}) is no"
+        f"R {short(1.0 / spike.curvature_per_m)} m over {length:.2g} m ({_degrees(angle)}) is no"
         f" curve of a road; driven as {_driven(left)}"
     )
 
@@ -122,4 +122,4 @@ def _driven(curvature_per_m: float) -> str:
     speed = np.sqrt(_LATERAL_MPS2 / max(curvature_per_m, 1e-9)) * KMH_PER_MPS
     if speed > _STRAIGHT_KMH:
         return "straight on"
-    return f"R {1.0 / curvature_per_m:.3g} m ({speed:.0f} km/h)"
+    return f"R {short(1.0 / curvature_per_m)} m ({speed:.0f} km/h)"

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from ...errors import ModelError
-from ...findings import Finding
+from ...findings import Finding, short
 from ...kernel.arrays import FloatArray
 from ..curves.bending import S, X, Y
 from ..curves.joints import Joints
@@ -76,9 +76,10 @@ def _fault(before: Stretch, behind: Stretch, gap: complex) -> str:
     # Lines that fan out are apart lengthways as well, each measured by its own direction.
     along = abs(local.real) - abs(local.imag) * abs(np.sin(turn))
     if along > LINE_GAP_MAX_M or abs(local.imag) > SIDEWAYS_MAX_M:
+        lengthways, aside = short(abs(local.real)), short(abs(local.imag))
         return (
-            f"it begins {abs(local.real):.3g} m along and {abs(local.imag):.3g} m beside the end of"
-            f" road {before.place.road}, to which it is linked; correct x and y or the link"
+            f"it begins {lengthways} m along and {aside} m beside the end of road"
+            f" {before.place.road}, to which it is linked; correct x and y or the link"
         )
     return ""
 

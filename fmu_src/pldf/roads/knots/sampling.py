@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...findings import Finding
+from ...findings import Finding, short
 from ...kernel.arrays import FloatArray
 from ..curves.joints import Joints
 from ..limits.speeds import Limits
@@ -132,7 +132,7 @@ def _refuse_jumps(place: Place, met: _Borders, line: NDArray[np.intc]) -> None:
         raise place.errors(
             (
                 int(line[at]),
-                f"the line jumps by {met.gap_m[at]:.3g} m at {met.s_m[at]:.6g} m of the route;"
+                f"the line jumps by {short(met.gap_m[at])} m at {met.s_m[at]:.6g} m of the route;"
                 " correct x and y",
             )
             for at in far

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final, NamedTuple
 
+from ...findings import short
 from ..opendrive.leg import Leg, road_length_m
 from ..options import OptionNeededError, RoadOptions
 from .network import Network, Onward, Step
@@ -62,7 +63,7 @@ def _described(network: Network, leg: Leg, way: Choice) -> str:
     about = [_turn(network.ends.turn_rad(leg, through))]
     if way.target != through:
         about.append(f"through road {through.id}")
-    about.append(f"{road_length_m(through):.3g} m")
+    about.append(f"{short(road_length_m(through))} m")
     return f"road {way.target.id} ({', '.join(filter(None, about))})"
 
 
