@@ -60,6 +60,7 @@ first = 2
 phases = ["A1", "A2", "B1", "B2"]
 order = "fixed"
 per_phase = 1
+threshold_growth_per_drive = 0.05
 step_s = 0.02
 through = "kernels"
 
@@ -88,6 +89,7 @@ def _read_study(path: Path) -> Answer:
             "people": [person.id for person in study.participants],
             "phases": [phase.name for phase in settings.phases],
             "counterbalanced": settings.counterbalanced,
+            "growth": settings.threshold_growth_per_drive,
             "step_s": settings.step_s,
             "through": study.through,
             "function": dict(settings.function),
@@ -128,6 +130,7 @@ def _judge_study(text: str) -> Values:
         "people": [f"P{first + n:03d}" for n in range(count)],
         "phases": phases,
         "counterbalanced": drives.get("order", "fixed") == "counterbalanced",
+        "growth": drives.get("threshold_growth_per_drive", 0.0),
         "step_s": drives.get("step_s", 0.01),
         "through": drives.get("through", "kernels"),
         "function": file.get("function", {}),

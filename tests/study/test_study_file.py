@@ -12,7 +12,7 @@ from pldf.roads import fingerprint, packed_route, write_route_csv
 from pldf.study.participants import DRIVER_SIGNALS
 from pldf.study.participants_file import participants_csv, read_participants
 from pldf.study.phases import PHASES
-from pldf.study.population import sample_participants
+from pldf.study.population import read_distribution, sample_participants
 from pldf.study.study_file import PACKAGED, Study, read_study, study_path
 from pldf.toml_file import line_of
 
@@ -192,13 +192,16 @@ def test_lines_are_found_in_every_way_to_write_a_key() -> None:
 
 
 def test_participants_read_back_to_the_same_bits(tmp_path: Path) -> None:
-    people = sample_participants(5, 3)
+    varying = {"wish.offset_person_sd_mps": 0.972222, "wish.lateral_occasion_sigma": 0.11}
+    people = sample_participants(5, 3, read_distribution(varying))
     path = tmp_path / "people.csv"
     path.write_bytes(participants_csv(people))
     back = read_participants(path)
     assert [(one.id, one.seed) for one in back] == [(one.id, one.seed) for one in people]
     for one, other in zip(back, people, strict=True):
         assert all(one.value(field) == other.value(field) for field in DRIVER_SIGNALS)
+        assert one.value("wish_offset_person_sd_mps") == 0.972222
+        assert one.value("wish_lateral_occasion_sigma") == 0.11
     assert participants_csv(back) == path.read_bytes()
 
 
