@@ -19,7 +19,7 @@ from pldf.study.study_file import study_path
 from studies import fit_population, long_run, predict_study
 
 STUDIES = Path(fit_population.__file__).parent
-FIT_INPUTS = ("fit_population.py", "population_constant_wish.toml")
+FIT_INPUTS = ("fit_population.py", "population.toml", "population_constant_wish.toml")
 
 
 def population(name: str) -> dict[str, dict]:
@@ -56,6 +56,23 @@ def test_the_older_fit_is_that_of_the_older_study_and_reached_the_targets() -> N
     fit = found["fit"]
     assert fit["targets_percent"] == pytest.approx([100 * rate for rate in PUBLISHED["A"]])
     assert fit["reached_percent"] == pytest.approx(fit["targets_percent"], abs=0.7)
+
+
+def test_fitted_numbers_are_those_of_the_paper_study_and_reach_the_targets() -> None:
+    found = population("population")
+    paper = tomllib.loads(study_path("paper").read_text())
+    assert read_distribution(paper["distribution"]) == read_distribution(found["distribution"])
+    fit = found["fit"]
+    assert fit["targets_percent"] == pytest.approx([100 * rate for rate in PUBLISHED["A"]])
+    assert fit["reached_percent"] == pytest.approx(fit["targets_percent"], abs=0.7)
+    factors = next(np.array(f) for f, rates in fit["tried"] if rates == fit["reached_percent"])
+    expected = fit_population.fitted(factors).as_table()
+    assert list(expected) == list(found["distribution"])
+    for name, law in found["distribution"].items():
+        usual = expected[name]
+        if isinstance(usual, dict):
+            assert law.pop("law") == usual.pop("law")
+        assert law == pytest.approx(usual, rel=1e-4)
 
 
 def test_the_rule_splits_the_variance_as_the_literature_correlates() -> None:
