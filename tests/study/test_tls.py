@@ -72,7 +72,7 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
             "--port", "0", "--no-dashboard", "--scheduler-file", str(place), **quiet,
         ))  # fmt: skip
         deadline = time.monotonic() + HANGS_S
-        while not place.exists():
+        while not place.exists() or not place.stat().st_size:  # it is made, then written
             assert time.monotonic() < deadline
             time.sleep(0.05)
         address = json.loads(place.read_bytes())["address"]
