@@ -57,7 +57,7 @@ class Run:
     """What one person taught in all drives, per drive and place.
 
     Attributes:
-        pedal, set_speed, combined: rates per drive.
+        rates: by pedal, by set speed and by either, per drive.
         accident: places pressed by accident, with the sign.
         wrong: places whose profile an accident changed.
         wished: places in which the driver intervened.
@@ -65,9 +65,7 @@ class Run:
         known: places that a lesson or a pending demonstration reaches, stretched as it is.
     """
 
-    pedal: list[float] = field(default_factory=list)
-    set_speed: list[float] = field(default_factory=list)
-    combined: list[float] = field(default_factory=list)
+    rates: list[tuple[float, float, float]] = field(default_factory=list)
     accident: list[NDArray[np.int64]] = field(default_factory=list)
     wrong: list[NDArray[np.bool_]] = field(default_factory=list)
     wished: list[NDArray[np.bool_]] = field(default_factory=list)
@@ -94,11 +92,10 @@ class Slipping(Simulation):
             press(arrays, *slip)
         everything = sorted([(*piece, False) for piece in own] + [(*s[:2], True) for s in free])
         trace = arrays.trace
-        for k, (start_m, end_m, _) in enumerate(everything):
-            trace.start_m[k], trace.end_m[k] = start_m, end_m
         barred = np.asarray(trace.barred)
         kept = {start: barred[k] for k, (start, _) in enumerate(own)}
-        for k, (start_m, _, _) in enumerate(everything):
+        for k, (start_m, end_m, _) in enumerate(everything):
+            trace.start_m[k], trace.end_m[k] = start_m, end_m
             barred[k] = kept.get(start_m, 0.0)
         st["drive_interventions"] = len(everything)
         iteration = super()._learn(st, arrays, stored)
@@ -181,9 +178,8 @@ def drive_all(simulation: Slipping, person: Participant, drives: int, share: flo
     driver = simulation.person(person)
     for number in range(drives):
         result = simulation.drive_once(driver, PHASES["B1"], number, stored)
-        simulation.run.pedal.append(result.row.pedal_rate)
-        simulation.run.set_speed.append(result.row.set_speed_rate)
-        simulation.run.combined.append(result.row.combined_rate)
+        row = result.row
+        simulation.run.rates.append((row.pedal_rate, row.set_speed_rate, row.combined_rate))
         assert result.iteration is not None  # B1 is learned from
         stored = stored.with_iteration(result.iteration)
     return simulation.run
@@ -197,9 +193,10 @@ def summaries(runs: Sequence[Run], twins: Sequence[Run], learn: int, share: floa
     """
     passes = [wait for run in runs for wait in waits(run)]
     content = np.array([~np.any(twin.known, axis=0) for twin in twins])
-    for drive in range(len(runs[0].pedal)):
+    for drive in range(len(runs[0].rates)):
         wrong = np.array([np.any(run.wrong[: drive + 1], axis=0) for run in runs])
         pressed = np.array([np.any(run.accident[: drive + 1], axis=0) for run in runs])
+        pedal, set_speed, combined = 100.0 * np.mean([run.rates[drive] for run in runs], axis=0)
         yield {
             "learn": LEARN.items[learn],
             "accidents_percent": 100.0 * share,
@@ -210,9 +207,9 @@ def summaries(runs: Sequence[Run], twins: Sequence[Run], learn: int, share: floa
             "content_percent": 100.0 * float(content.mean()),
             "wrong_content_percent": 100.0 * float(wrong[content].mean()),
             "passes_to_learn": float(np.mean(passes)),
-            "pedal_percent": 100.0 * float(np.mean([run.pedal[drive] for run in runs])),
-            "set_speed_percent": 100.0 * float(np.mean([run.set_speed[drive] for run in runs])),
-            "combined_percent": 100.0 * float(np.mean([run.combined[drive] for run in runs])),
+            "pedal_percent": float(pedal),
+            "set_speed_percent": float(set_speed),
+            "combined_percent": float(combined),
         }
 
 
@@ -249,14 +246,11 @@ def figure(rows: Sequence[Row]) -> Scene:
         "pedal_percent": Axis("Pedals", note="(% of the time)", low=0.0),
         "set_speed_percent": Axis("Set speed", note="(% of the time)", low=0.0),
     }
-    return Scene(
-        tuple(
-            Panel(tuple(_lines(rows, name)), Axis("Drive"), axis, 2.2)
-            for name, axis in measures.items()
-        ),
-        columns=2,
-        width_in=9.0,
-    )
+    panels = [
+        Panel(tuple(_lines(rows, name)), Axis("Drive"), axis, 2.2)
+        for name, axis in measures.items()
+    ]
+    return Scene(tuple(panels), columns=2, width_in=9.0)
 
 
 def _lines(rows: Sequence[Row], name: str) -> Iterator[Line]:
@@ -290,10 +284,8 @@ def main() -> int:
             for row in done[options.drives - 1 :: options.drives]:
                 print(", ".join(f"{name} {_shown(v)}" for name, v in row.items()), flush=True)
     options.out.mkdir(parents=True, exist_ok=True)
-    write_table(
-        options.out / "consistent.csv",
-        {name: [_shown(row[name]) for row in rows] for name in rows[0]},
-    )
+    table = {name: [_shown(row[name]) for row in rows] for name in rows[0]}
+    write_table(options.out / "consistent.csv", table)
     paper.save(options.out / "consistent.png", figure(rows))
     return 0
 

@@ -67,7 +67,7 @@ def test_a_place_is_taught_wrongly_once_and_for_all() -> None:
     slips = [np.array([1, 0, -1]), np.array([0, 0, 0])]
     run = run_of([[1, 0, 0], [0, 0, 0]], [[1, 0, 0], [0, 0, 0]])
     run.wrong, run.accident = drives, slips
-    run.pedal, run.set_speed, run.combined = [0.1, 0.2], [0.0, 0.0], [0.1, 0.2]
+    run.rates = [(0.1, 0.0, 0.1), (0.2, 0.0, 0.2)]
     twin = run_of([[1, 0, 0], [0, 1, 0]], [[1, 0, 0], [0, 1, 0]])
     first, second = summaries([run], [twin], LEARN_CONSISTENT, 0.02)
     for row in (first, second):
