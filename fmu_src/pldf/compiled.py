@@ -113,6 +113,7 @@ KERNEL_MODULES: tuple[ModuleType, ...] = (
 # Kernels allocate nothing, so numba need not count references to arrays in every call (12 times
 # faster per step); a kernel that does allocate fails to compile.
 OPTIONS: Final[dict[str, Any]] = {"error_model": "numpy", "_nrt": False}
+_LOCATOR: Final = "pldf.kernel_cache.BySource"
 
 
 @cache
@@ -167,17 +168,18 @@ def _cache_folder(modules: Sequence[ModuleType], inline: bool) -> Iterator[bool]
     import numba  # noqa: PLC0415 - as above
 
     config: Any = numba.config
-    before = config.CACHE_DIR
+    before = config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES
     try:
         folder.mkdir(parents=True, exist_ok=True)
         usable = os.access(folder, os.W_OK)
     except OSError:
         usable = False  # compiled anew in every process: slower, not wrong
-    config.CACHE_DIR = str(folder) if usable else before
+    if usable:
+        config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = str(folder), _LOCATOR
     try:
         yield usable
     finally:
-        config.CACHE_DIR = before
+        config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES = before
 
 
 def digest(modules: Sequence[ModuleType]) -> str:
