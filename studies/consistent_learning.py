@@ -271,7 +271,7 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=Path("out/consistent"))
     parser.add_argument("--people", type=int, default=43)
     parser.add_argument("--drives", type=int, default=10)
-    parser.add_argument("--seed", type=int, default=1, help="draws the people; 1 as in paper.toml")
+    parser.add_argument("--seed", type=int, default=1, help="draws the people; 1 as in the studies")
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     options = parser.parse_args()
     distribution = read_distribution(tomllib.loads(fitted.read_text())["distribution"])
