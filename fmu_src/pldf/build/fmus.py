@@ -52,6 +52,7 @@ PLDF: Final = Package(
         "commands",
         "compiled.py",
         "cosim",
+        "kernel_cache.py",
         "recordings",
         "report",
         "roads/make_study_road.py",
