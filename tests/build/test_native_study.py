@@ -47,7 +47,7 @@ def test_all_six_drives_are_those_of_the_python_fmus(
     found = []
     for kind, folder in (("Python", fmu_folder), ("native", native_folder)):
         out = tmp_path / kind
-        fmus = ["--fmu", kind.lower(), "--fmus", str(folder)]
+        fmus = ["--step", "0.05", "--fmu", kind.lower(), "--fmus", str(folder)]
         assert cli.main(["study", "--out", str(out), *fmus]) == 0
         assert len(ProfileStore(out / "profiles").files()) == 1
         found.append(files(out))
