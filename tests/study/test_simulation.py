@@ -28,6 +28,8 @@ from pldf.study.phases import PHASES, seed_of_drive
 from pldf.study.simulation import prepared, simulate_participant
 from pldf.study.through_fmus import drive_participant
 
+from vehicle_models.driver import ScriptedDriver
+
 BOLD = Participant(
     "P001",
     42,
@@ -37,6 +39,12 @@ CAREFUL = Participant(
     "P002", 999_999_999, {"wish_offset_mps": -2.5, "wish_lateral_accel_max_mps2": 1.9,
                           "driver_uses_lever": 0},
 )  # fmt: skip
+VARIES = {
+    "wish_offset_person_sd_mps": 1.0, "wish_offset_place_sd_mps": 0.8,
+    "wish_offset_occasion_sd_mps": 0.6, "wish_lateral_person_sigma": 0.2,
+    "wish_lateral_place_sigma": 0.1, "wish_lateral_occasion_sigma": 0.1,
+}  # fmt: skip
+CHANGING = replace(CAREFUL, values={**CAREFUL.values, **VARIES})
 
 
 def settings(*phases: str, recorded: tuple[str, ...] = (), step_s: float = 0.01) -> StudySettings:
@@ -70,7 +78,7 @@ def assert_same(one: tuple[DriveResult, ...], other: tuple[DriveResult, ...]) ->
 
 @pytest.mark.parametrize(
     ("participant", "phases", "step_s"),
-    [(BOLD, ("A2", "B1"), 0.01), (CAREFUL, ("A2", "A3", "B1", "B2"), 0.05)],
+    [(BOLD, ("A2", "B1"), 0.01), (CHANGING, ("A2", "A3", "B1", "B2"), 0.05)],
 )
 def test_the_fmus_give_the_same_to_the_bit(
     fmus: dict[str, Fmu], participant: Participant, phases: tuple[str, ...], step_s: float
@@ -86,6 +94,28 @@ def test_the_fmus_give_the_same_to_the_bit(
     assert_same(in_process, drive_participant(fmus, chosen, participant, lambda _: None))
     assert in_process[0].row.interventions > 0
     assert in_process[-1].row.wish_error_mps < in_process[0].row.wish_error_mps
+    varied = [drive.row.drive_wish_error_mps != drive.row.wish_error_mps for drive in in_process]
+    assert varied == [participant is CHANGING] * len(phases)
+
+
+def test_drives_wish_is_what_the_driver_model_plans_from_both_seeds() -> None:
+    simulation = prepared(settings())
+    person = simulation.person(CHANGING)
+    planned = ScriptedDriver()
+    for name, value in CHANGING.values.items():
+        setattr(planned.record, name, value)
+    planned.record.person_seed = CHANGING.seed
+    planned.record.driver_uses_lever = 0
+    for number, seed in enumerate((999_999_999, 0, 1)):
+        planned.record.seed = seed
+        planned.initialize()
+        of_drive = simulation.wish_of_drive(person, number)
+        for ours, theirs in zip(of_drive, planned.arrays, strict=False):
+            assert np.asarray(ours).tobytes() == np.asarray(theirs).tobytes()
+    # The lasting wish is that of a drive without an occasion, whichever drive it is.
+    planned.record.wish_offset_occasion_sd_mps = planned.record.wish_lateral_occasion_sigma = 0.0
+    planned.initialize()
+    assert np.asarray(person.wish.wish_mps).tobytes() == np.asarray(planned.arrays[0]).tobytes()
 
 
 def test_the_loop_is_wired_as_the_fmus_are(fmus: Mapping[str, Fmu]) -> None:
