@@ -34,6 +34,7 @@ count = 2
 seed = 5
 [drives]
 step_s = 0.05
+threshold_growth_per_drive = 0.1
 [road]
 route = "road.csv"
 [recordings]
