@@ -63,6 +63,7 @@ TEXTS: Final = {
     "SET_SPEED": "set speed, %d to %d m%s: ",
     "SET_LEARNED": "%s km/h learned",
     "SET_CUT": "%s km/h learned of the %s km/h set, held by legal limit + tolerance",
+    "SET_SHARE": ", the profile goes %d percent of the way",
     "SET_NOT_ELIGIBLE": "%s km/h not learned: learning was not allowed there",
     "SET_FORGOTTEN": "%s km/h not learned: set before the place was forgotten",
     "SET_UNDONE": "%s km/h not learned: the driver took it back",
@@ -176,6 +177,8 @@ def set_speed_words(outcomes: Outcomes, series: SetSpeedOutcome) -> str:
     if series.outcome == OUTCOME_PENDING:
         return TEXTS["SET_PENDING"] % (wish, tenths(series.proof), tenths(outcomes.accept))
     told = TEXTS["SET_CUT"] % (offset, wish) if series.is_cut else TEXTS["SET_LEARNED"] % offset
+    if outcomes.set_speed_gain < 1.0:
+        told += TEXTS["SET_SHARE"] % whole(100.0 * outcomes.set_speed_gain)
     return told + barred_words(series.barred_m)
 
 

@@ -75,7 +75,7 @@ class SetSpeedOutcome(NamedTuple):
     Attributes:
         from_m, to_m: where its offset holds, or would have held.
         wish_mps: offset from the legal limit that the driver set.
-        offset_mps: what was adopted of it.
+        offset_mps: what was adopted of it, or approached where ``set_speed_gain`` is below 1.
         outcome: OUTCOME in ``kernel.codes``.
         proof: evidence that it has got, while it waits for more.
         barred_m: how much of it lies where learning was not allowed, which takes no offset.
@@ -125,6 +125,7 @@ class Outcomes(NamedTuple):
         slowest_mps: below this speed the car stops, which is no wish.
         places: whose evidence changed, with learn = CONSISTENT.
         accept: evidence from which an intervention is learned.
+        set_speed_gain: share of the way to an adopted offset that the profile goes.
     """
 
     pedals: tuple[PedalOutcome, ...]
@@ -133,6 +134,7 @@ class Outcomes(NamedTuple):
     slowest_mps: float
     places: tuple[Place, ...]
     accept: float
+    set_speed_gain: float
 
 
 def outcomes_of(st: PldfState, trace: TraceArrays, following: NextArrays) -> Outcomes:
@@ -154,6 +156,7 @@ def outcomes_of(st: PldfState, trace: TraceArrays, following: NextArrays) -> Out
         slowest_mps=st.learning_speed_min_mps,
         places=tuple(_place(following, k) for k in range(st.evidence_places)),
         accept=st.learning_evidence_accept,
+        set_speed_gain=st.learning_set_speed_gain,
     )
 
 

@@ -40,22 +40,23 @@ def test_the_logs_are_equal(native_folder: Path, tmp_path: Path) -> None:
     assert native_lines(Host3(native_folder / "fmi3" / "AdaptivePLDF.fmu"), prepared) == expected
 
 
-@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize(("fmi", "set_speed_gain"), [(2, 1.0), (3, 1.0), (2, 0.63)])
 def test_evidence_is_weighed_and_told_as_in_python(
-    native_folder: Path, tmp_path: Path, fmi: int
+    native_folder: Path, tmp_path: Path, fmi: int, set_speed_gain: float
 ) -> None:
     """Drives in a row that only learn what is consistent: equal logs, equal profile files."""
     road = write_straight_road(tmp_path)
     prepared = tmp_path / "road.prepared"
     write_prepared_route(chosen_route(0, str(road)), prepared)
-    expected = told_in_python(road, tmp_path / "python")
+    expected = told_in_python(road, tmp_path / "python", set_speed_gain)
     folder = native_folder if fmi == 2 else native_folder / "fmi3"
     host = (Host if fmi == 2 else Host3)(folder / "AdaptivePLDF.fmu")
     for k, done in enumerate(DRIVES):
         slave = host.instantiate()
         slave.start(
-            route_file=str(prepared), profile_store=str(tmp_path / "native"), learn_consistent=True
-        )
+            route_file=str(prepared), profile_store=str(tmp_path / "native"), learn_consistent=True,
+            learning__set_speed_gain=set_speed_gain,
+        )  # fmt: skip
         for time_s, step_s, inputs in inputs_of(done):
             slave.set(**{name.replace("_", "__", 1): value for name, value in inputs.items()})
             slave.fmu.doStep(time_s, step_s)

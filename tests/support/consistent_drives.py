@@ -60,7 +60,7 @@ def inputs_of(done: tuple[tuple[float, str], ...]) -> Iterator[tuple[float, floa
         time_s += STEP_S
 
 
-def told_in_python(road: Path, store: Path) -> list[list[str]]:
+def told_in_python(road: Path, store: Path, set_speed_gain: float = 1.0) -> list[list[str]]:
     """Return what the function says at the end of each drive; profiles go into ``store``."""
     told = []
     for done in DRIVES:
@@ -68,6 +68,7 @@ def told_in_python(road: Path, store: Path) -> list[list[str]]:
         made.texts.route_file = str(road)
         made.texts.profile_store = str(store)
         made.record.learn_consistent = 1
+        made.record.learning_set_speed_gain = set_speed_gain
         made.initialize()
         for _, step_s, inputs in inputs_of(done):
             for name, value in inputs.items():

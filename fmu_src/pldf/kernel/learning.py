@@ -13,13 +13,13 @@ from .evidence import copy_evidence
 from .evidence_places import find_places
 from .lever_evidence import drop_offset_evidence, recognize_offsets, weigh_offsets
 from .lowering import UNMARKED
-from .offsets import Drive, adopt_offsets
+from .offsets import Drive, adopt_offsets, approach_offsets
 from .outcomes import tell_outcomes
 from .pedal_evidence import accept_pedals, drop_evidence, recognize_lessons, weigh_pedals
 from .pieces import insert_pieces
 from .preparation import plan
 from .recorder import learns_consistent
-from .segments import average, find_segments, learn_segments
+from .segments import AS_PLANNED, average, find_segments, learn_segments
 from .speech import say_learned
 from .state import PldfState
 
@@ -54,6 +54,7 @@ def learn_drive(
         average(st, work)
         drop_evidence(work, following)
         drop_offset_evidence(lever)
+    _go_part_of_the_way(st, lever, work)
     learn_segments(st, work, following)
     bound_segments(st, route, work, following)
     tell_outcomes(st, route, profile, trace, following)
@@ -74,15 +75,29 @@ def _weigh(st: PldfState, lever: Drive, work: Work) -> None:
     weigh_pedals(st, trace, work, following)
     weigh_offsets(st, lever)
     if st.set_series > 0:
-        for i in range(len(profile.learned_mps)):
-            following.planned_mps[i] = profile.planned_mps[i]
-            following.learned_mps[i] = profile.learned_mps[i]
-            following.drive[i] = profile.drive[i]
-            following.intervention[i] = profile.intervention[i]
-        _follow_offsets(st, route, profile, work, following)
+        _follow_offsets_anew(st, route, profile, work, following)
         for i in range(len(work.c)):
             work.c[i] = following.learned_mps[i]
     accept_pedals(st, work, following)
+
+
+def _go_part_of_the_way(st: PldfState, lever: Drive, work: Work) -> None:
+    """Plan with the share of the adopted offsets that ``learning_set_speed_gain`` says.
+
+    What the pedals teach was judged against all of them, the set speed that the driver drove with:
+    it is carried to this plan, so that what the lever still lacks is not learned from the pedals.
+    """
+    route, profile, _, following, _ = lever
+    if st.learning_set_speed_gain < 1.0 and _adopted(st, following):
+        approach_offsets(st, profile, following)
+        for i in range(len(work.c)):
+            work.d[i] = work.c[i]  # planning overwrites it
+        _follow_offsets_anew(st, route, profile, work, following)
+        for i in range(len(work.c)):
+            work.g[i] += following.learned_mps[i] - work.d[i]
+            if work.f[i] == AS_PLANNED:
+                work.g[i] = following.planned_mps[i]
+            work.c[i] = following.learned_mps[i]
 
 
 def copy_profile(profile: ProfileArrays, following: NextArrays) -> None:
@@ -122,6 +137,22 @@ def _follow_offsets(
     if _adopted(st, following):
         plan_with_offsets(st, route, profile, work, following)
         carry_learned(st, route, profile, following)
+
+
+def _follow_offsets_anew(
+    st: PldfState,
+    route: RouteArrays,
+    profile: ProfileArrays,
+    work: Work,
+    following: NextArrays,
+) -> None:
+    """Plan with other offsets than ``following`` was planned with before in this lesson."""
+    for i in range(len(profile.learned_mps)):
+        following.planned_mps[i] = profile.planned_mps[i]
+        following.learned_mps[i] = profile.learned_mps[i]
+        following.drive[i] = profile.drive[i]
+        following.intervention[i] = profile.intervention[i]
+    _follow_offsets(st, route, profile, work, following)
 
 
 def plan_with_offsets(

@@ -31,6 +31,17 @@ def adopt_offsets(st: PldfState, drive: Drive) -> None:
             following.offset_mps[cell] = following.set_offset_mps[int(series[cell]) - 1]
 
 
+def approach_offsets(st: PldfState, profile: ProfileArrays, following: NextArrays) -> None:
+    """Go the share ``learning_set_speed_gain`` of the way from the offsets driven to those adopted.
+
+    With a gain of 1 these are the ones adopted, to the bit.
+    """
+    gain = st.learning_set_speed_gain
+    for cell in range(len(following.offset_mps)):
+        driven, adopted = profile.offset_mps[cell], following.offset_mps[cell]
+        following.offset_mps[cell] = gain * adopted + (1.0 - gain) * driven
+
+
 def _find_series(st: PldfState, drive: Drive) -> None:
     route = drive[0]
     st.set_series = 0

@@ -250,6 +250,13 @@ class LearningParameters:
             "s", start=5.0, low=0.0, high=60.0,
         ),
     )  # fmt: skip
+    learning_set_speed_gain: float = since(
+        "0.3",
+        real_parameter(
+            "Share of the way to the driver's set speed that a drive learns, 1 = as it was set",
+            "", start=1.0, low=0.0, high=1.0,
+        ),
+    )  # fmt: skip
     learning_evidence_gain: float = since(
         "0.3",
         real_parameter(

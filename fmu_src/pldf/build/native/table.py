@@ -48,6 +48,7 @@ _LEARNING_CELLS: Final = {
     "holds": "holds",
     "places": "evidence_places",
     "accept": "learning_evidence_accept",
+    "set_speed_gain": "learning_set_speed_gain",
     "speed_min": "learning_speed_min_mps",
     "profile_iteration": "profile_iteration",
     "profile_status": "profile_status",

@@ -56,7 +56,7 @@ typedef struct { /* what only a model that learns has: cells, texts and columns 
     int32_t recorded_count, head_count, recording_text;
     int32_t store_text, driver_id, apply_learned, learn_if[3], localization;
     int32_t first_node, nodes, intervening, interventions, profile_iteration, profile_status;
-    int32_t set_series, holds, places, speed_min, accept, time_ns, s_m, input_state;
+    int32_t set_series, holds, places, speed_min, accept, set_speed_gain, time_ns, s_m, input_state;
     int32_t teach_wanted, words, taken_back;
     int32_t base_column, learned_column, trace_column, next_column;
 } Learning;

@@ -128,6 +128,7 @@ static void add_pedal(Line *line, const State *state, const Run *run, int64_t k)
 
 static void add_set_speed(Line *line, const State *state, const Run *run, int64_t k) {
     double wish = NEXT(SET_WISH_MPS), offset = NEXT(SET_OFFSET_MPS);
+    double gain = state->record[model.learning->set_speed_gain].real;
     add(line, TEXT_SET_SPEED, whole(NEXT(SET_FROM_M)), whole(NEXT(SET_TO_M)),
         roads(run, NEXT(SET_FROM_M), NEXT(SET_TO_M)).text);
     switch ((int)NEXT(SET_OUTCOME)) {
@@ -143,6 +144,7 @@ static void add_set_speed(Line *line, const State *state, const Run *run, int64_
         if (offset < wish - SAME_OFFSET_MPS)
             add(line, TEXT_SET_CUT, signed_kmh(offset).text, signed_kmh(wish).text);
         else add(line, TEXT_SET_LEARNED, signed_kmh(offset).text);
+        if (gain < 1.0) add(line, TEXT_SET_SHARE, whole(100.0 * gain));
         add_barred(line, NEXT(SET_BARRED_M));
     }
 }
