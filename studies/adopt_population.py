@@ -2,9 +2,9 @@
 
     python studies/adopt_population.py          # after studies/fit_population.py
 
-The paper's study gets the distribution of studies/population.toml, and the study of one driver gets
-its most usual participant (pldf/study/typical.py), who is also the one that the paper's study
-records: the example of README and report is chosen by a rule, not by hand.
+The paper's study and studies/long_run.toml get the distribution of studies/population.toml. The
+study of one driver gets the typical participant of the paper's study (pldf/study/typical.py), who
+is also recorded there: the example of README and report is chosen by a rule, not by hand.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from pldf.study.study_file import ONE_DRIVER, PACKAGED, read_study
 from pldf.toml_file import shown
 
 POPULATION: Final = Path(__file__).with_name("population.toml")
+LONG_RUN: Final = Path(__file__).with_name("long_run.toml")
 # A table's lines up to the next empty one.
 _DISTRIBUTION: Final = re.compile(r"(?<=^\[distribution\]\n)(.+\n)+", re.MULTILINE)
 _DRIVER: Final = re.compile(r"(?<=^\[driver\]\n)(.+\n)+", re.MULTILINE)
@@ -28,14 +29,19 @@ _SEED: Final = re.compile(r"^seed = .*$", re.MULTILINE)
 
 def adopt(population: Path, paper: Path, one_driver: Path) -> Participant:
     """Write the distribution into ``paper``, its typical person into ``one_driver``; return it."""
-    found = _DISTRIBUTION.search(population.read_text(encoding="utf-8"))
-    if found is None:
-        raise ValueError(f"{population}: no table [distribution]")
-    _rewrite(paper, _DISTRIBUTION, found[0])
+    take_over(population, paper)
     person = example(paper)
     _rewrite(one_driver, _SEED, f"seed = {person.seed}")
     _rewrite(one_driver, _DRIVER, _described(person))
     return person
+
+
+def take_over(population: Path, study: Path) -> None:
+    """Write the distribution into ``study``."""
+    found = _DISTRIBUTION.search(population.read_text(encoding="utf-8"))
+    if found is None:
+        raise ValueError(f"{population}: no table [distribution]")
+    _rewrite(study, _DISTRIBUTION, found[0])
 
 
 def example(paper: Path) -> Participant:
@@ -66,6 +72,7 @@ def _rewrite(path: Path, what: re.Pattern[str], new: str) -> None:
 def main() -> int:
     """Write and say who the example is."""
     paper, one_driver = (PACKAGED / f"{name}.toml" for name in ("paper", ONE_DRIVER))
+    take_over(POPULATION, LONG_RUN)
     person = adopt(POPULATION, paper, one_driver)
     print(f"{person.id} is the typical person, now in {one_driver}")
     return 0

@@ -190,6 +190,7 @@ def run_study(
 
     Args:
         file: study file (TOML), or ``paper``, the paper's study; None: one driver through the FMUs.
+            Variants get a folder each, in ``out``.
         out: folder of the results; None: the study's own.
         jobs: processes; None: one for each core. The results are the same.
         restart: forget what was driven before.
@@ -205,21 +206,27 @@ def run_study(
 
     from .build.first_use import fmus_to_drive
     from .cosim.master import unpacked
-    from .study.results import StudyResults
     from .study.runner import in_processes, run_missing
     from .study.study_file import ONE_DRIVER, read_study, study_path
     from .study.unit import Job
+    from .study.variants import open_folders
 
     study = read_study(study_path(ONE_DRIVER if file is None else os.fspath(file)))
+    place = Path(out or study.out)
     with ExitStack() as stack:
         through_fmus = study.through == "fmus"
         fmus = stack.enter_context(unpacked(fmus_to_drive().folder)) if through_fmus else None
-        folder = StudyResults(study, Path(out or study.out), fmus)
-        for note in folder.open(restart):
+        folders, notes = open_folders(study, place, fmus, restart)
+        for note in notes:
             warnings.warn(note, stacklevel=2)
         run = in_processes(jobs or os.cpu_count() or 1)
-        run_missing(folder, Job(study.settings, fmus), run, lambda _: None)
-    return folder.out
+        for folder in folders:
+            run_missing(folder, Job(folder.study.settings, fmus), run, lambda _: None)
+    if study.variants:
+        from .report.long_run import compare_variants
+
+        compare_variants(folders, place)
+    return place
 
 
 def analyse(

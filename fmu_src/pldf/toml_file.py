@@ -62,24 +62,31 @@ class TomlFile:
         """Raise ModelError for ``key``."""
         raise ModelError(f"{self.path}, line {line_of(self.text, key)}, {'.'.join(key)}: {problem}")
 
-    def read(self, kind: type[StructT], table: str = "") -> StructT:
-        """Return the file, or one of its tables, as a structure."""
-        raw = self.table.get(table, {}) if table else self.table
+    def read(self, kind: type[StructT], *table: str) -> StructT:
+        """Return the file, or one of its tables, or a table within, as a structure."""
+        raw = self.within(*table)
         try:
             return msgspec.convert(raw, kind)
         except msgspec.ValidationError as error:
             self._explain(kind, table, str(error))
 
-    def _explain(self, kind: type[msgspec.Struct], table: str, text: str) -> NoReturn:
+    def within(self, *table: str) -> Any:
+        """Return what stands in the file, in one of its tables, or in a table within."""
+        found: Any = self.table
+        for name in table:
+            found = found.get(name, {})
+        return found
+
+    def _explain(self, kind: type[msgspec.Struct], table: Key, text: str) -> NoReturn:
         """Fail with what msgspec found wrong; only the file itself has tables within."""
         at, unknown = _AT.search(text), _UNKNOWN.search(text)
         path = at["path"] if at else ""
         names = [path] if table and path else path.split(".") if path else []
-        value: Any = self.table.get(table, {}) if table else self.table
+        value: Any = self.within(*table)
         declared: Any = kind
         for name in names:
             declared, value = _fields(declared)[name], value[name]
-        key = (table, *names) if table else tuple(names)
+        key = (*table, *names)
         if unknown:
             is_table = isinstance(value[unknown[1]], dict)
             known = [n for n, t in _fields(declared).items() if _is_table(t) or not is_table]

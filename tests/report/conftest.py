@@ -19,11 +19,12 @@ seed = 4
 [recordings]
 participants = ["P001"]
 """
-LONG_RUN = """stretch_factor,drive,pedal_percent,combined_percent,content_percent,wish_error_kmh
-0,1,22,50,0,9
-0,2,12,24,10,6
-0.5,1,22,50,0,9
-0.5,2,10,20,20,5
+LONG_RUN = """variant,phase,pedal_percent,set_speed_percent,combined_percent,\
+wish_error_kmh,drive_wish_error_kmh,content_percent
+gain 1,B1,22,30,50,9,9.5,0
+gain 1,B2,12,14,24,6,7,10
+gain 0.5,B1,22,30,50,9,9.5,0
+gain 0.5,B2,10,12,20,5,6,20
 """
 # Satisfying items alone: A is annoying, B nice.
 QUESTIONNAIRE = """participant,system,laan_2,laan_4,laan_6,laan_8

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from pldf.analysis.long_run import MEASURES
 from pldf.kernel.units import KMH_PER_MPS
 from pldf.profiles.stored_profile import StoredProfile
 from pldf.recordings.interventions import Rates
@@ -160,15 +161,16 @@ def test_the_steps_are_shown_one_after_the_other() -> None:
     assert [label for label, line in lines.items() if line.raised] == ["4 mean"]
 
 
-def test_the_long_run_has_a_line_per_stretch_factor() -> None:
-    names = ("pedal_percent", "combined_percent", "content_percent", "wish_error_kmh")
-    runs = {f: {"drive": [1.0, 2.0], **{n: [f, f + k] for k, n in enumerate(names)}}
+def test_the_long_run_has_a_line_per_variant() -> None:
+    runs = {f"gain {f}": {"drive": [1.0, 2.0], **{n: [f, f + k] for k, n in enumerate(MEASURES)}}
             for f in (0.0, 0.5)}  # fmt: skip
     scene = figures.long_run(runs)
-    assert (len(scene.panels), scene.columns) == (4, 2)
-    assert scene.legend == ("Stretch factor 0", "Stretch factor 0.5")
-    ends = [labelled(p, Line)["Stretch factor 0.5"].y[-1] for p in scene.panels]
-    assert ends == [1.5, 0.5, 2.5, 3.5]
+    assert (len(scene.panels), scene.columns) == (6, 2)
+    assert scene.legend == ("gain 0.0", "gain 0.5")
+    ends = [labelled(p, Line)["gain 0.5"].y[-1] for p in scene.panels]
+    shown = ("combined", "content", "pedal", "set_speed", "wish_error", "drive_wish_error")
+    order = [next(k for k, n in enumerate(MEASURES) if n.startswith(name)) for name in shown]
+    assert ends == [0.5 + k for k in order]
     assert all(panel.y.low == 0.0 for panel in scene.panels)
 
 

@@ -12,11 +12,11 @@ from pldf.analysis.analysis import analyse
 from pldf.analysis.drives_table import read_drives
 from pldf.analysis.published import PUBLISHED
 from pldf.analysis.study_folder import StudyFolder
-from pldf.study.drive_row import DriveRow
+from pldf.kernel.codes import LEARN_CONSISTENT, LEARN_FAITHFUL
 from pldf.study.population import Distribution, read_distribution, sample_participants
-from pldf.study.study_file import study_path
+from pldf.study.study_file import read_study, study_path
 
-from studies import fit_population, long_run, predict_study
+from studies import fit_population, predict_study
 
 STUDIES = Path(fit_population.__file__).parent
 FIT_INPUTS = ("fit_population.py", "population.toml", "population_constant_wish.toml")
@@ -178,21 +178,13 @@ def test_studies_have_different_people_with_numbers_of_their_own() -> None:
     assert first[0].values != second[0].values
 
 
-def test_long_run_summary() -> None:
-    rows = [DriveRow(f"P{k}", "B2", 0.1 * k, 0.0, 0.1 * k, 2, 200.0, k, 1.0) for k in range(3)]
-    found = long_run.summary(0.5, 2, rows)
-    assert found["combined_percent"] == pytest.approx(10.0)
-    assert found["content_percent"] == pytest.approx(100.0 / 3.0)
-    assert found["wish_error_kmh"] == pytest.approx(3.6)
-
-
-def test_long_run_drives_learns_and_draws(tmp_path: Path) -> None:
-    people = sample_participants(2, 1)
-    summaries = long_run.long_run(people, 0.5, drives=3, jobs=1)
-    errors = [row["wish_error_kmh"] for row in summaries]
-    assert errors[2] < errors[1] < errors[0]
-    long_run.write(summaries, tmp_path)
-    header, *lines = (tmp_path / "long_run.csv").read_text().splitlines()
-    assert header.startswith("stretch_factor,drive,people")
-    assert len(lines) == 3
-    assert (tmp_path / "long_run.png").stat().st_size > 10_000
+def test_the_long_run_is_driven_by_the_people_of_the_papers_study() -> None:
+    long_run, paper = read_study(STUDIES / "long_run.toml"), read_study(study_path("paper"))
+    assert long_run.participants == paper.participants
+    assert [phase.name for phase in long_run.settings.phases] == [f"B{k + 1}" for k in range(30)]
+    found = {
+        (int(one.settings.function["learn"]), one.settings.function["learning.set_speed_gain"])
+        for one in long_run.variants.values()
+    }
+    learns = (LEARN_FAITHFUL, LEARN_CONSISTENT)
+    assert found == {(learn, gain) for learn in learns for gain in (1.0, 0.81, 0.63, 0.5)}

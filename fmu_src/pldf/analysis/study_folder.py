@@ -20,7 +20,7 @@ from ..recordings.recording import Recording, read_recording
 from ..roads import Route
 from ..study.drive_row import PHASE
 from ..study.own_files import PROFILES, RECORDINGS, STUDY
-from ..study.phases import PHASES, Phase
+from ..study.phases import PHASES, Phase, repeated
 from ..study.study_tables import StudyTables
 from ..toml_file import TomlFile
 from .exclusions import EXCLUSIONS, Exclusions, read_exclusions
@@ -90,16 +90,7 @@ class StudyFolder:
     def order(self) -> list[Phase]:
         """Return the drives in the order of the study; repeated phases are numbered anew."""
         drives = self.study_file.get("drives", {})
-        repeats = drives.get("per_phase", 1)
-        phases = [PHASES[name] for name in drives.get("phases", PHASES) for _ in range(repeats)]
-        if repeats == 1:
-            return phases
-        counts = dict.fromkeys(SYSTEMS, 0)
-        for at, phase in enumerate(phases):
-            system = phase.name[0]
-            counts[system] += 1
-            phases[at] = phase._replace(name=f"{system}{counts[system]}")
-        return phases
+        return repeated(drives.get("phases", PHASES), drives.get("per_phase", 1))
 
     def compared(self) -> dict[str, tuple[str, ...]]:
         """Return, per system, the drives in which the drivers intervene."""

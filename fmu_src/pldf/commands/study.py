@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Final
 
+from ..cosim.fmu import Fmu
 from ..cosim.kinds import USUAL_FOLDER
 from ..study.own_files import DRIVES, PARTICIPANTS
 from ..study.results import StudyResults
@@ -17,6 +18,7 @@ from ..study.runner import in_processes, on_cluster, prepare_processes, run_miss
 from ..study.study_file import ONE_DRIVER, Study, read_study, study_path
 from ..study.study_parameters import changes_of
 from ..study.unit import Job, ParticipantResult
+from ..study.variants import missing_in, open_folders
 from ..toml_file import Key
 from .shared.coupling import (
     NATIVE_IF_GOOD,
@@ -102,12 +104,16 @@ def run(options: argparse.Namespace) -> None:
     out: Path = options.out or study.out
     with ExitStack() as stack:
         fmus = stack.enter_context(chosen_fmus(options)) if through_fmus else None
-        folder = StudyResults(study, out, fmus)
-        for note in folder.open(options.restart):
+        folders, notes = open_folders(study, out, fmus, options.restart)
+        for note in notes:
             print(f"pldf: {note}", file=sys.stderr)
-        _drive(options, folder, Job(study.settings, fmus))
+        _drive(options, folders, fmus)
     drives = len(study.participants) * len(study.settings.phases)
-    print(f"{study.title}: {len(study.participants)} participants, {drives} drives")
+    each = f" with each of {len(study.variants)} variants" if study.variants else ""
+    print(f"{study.title}: {len(study.participants)} participants, {drives} drives{each}")
+    if study.variants:
+        _compare(folders, out)
+        return
     print(f"Drives are in {out / DRIVES}, drivers in {out / PARTICIPANTS}.")
     if len(study.participants) == 1 and study.settings.recorded:
         _show(study, out)
@@ -135,10 +141,13 @@ def _changes(options: argparse.Namespace) -> dict[Key, Any]:
     return {**changed, **changes_of(split_settings(options.settings))}
 
 
-def _drive(options: argparse.Namespace, folder: StudyResults, job: Job) -> None:
-    """Drive what is missing, with a bar; say what the FMUs warned of."""
-    count, phases = len(folder.study.participants), len(job.settings.phases)
-    done = count - len(folder.missing())
+def _drive(
+    options: argparse.Namespace, folders: Sequence[StudyResults], fmus: dict[str, Fmu] | None
+) -> None:
+    """Drive what is missing, with one bar over all folders; say what the FMUs warned of."""
+    study = folders[0].study
+    count, phases = len(study.participants) * len(folders), len(study.settings.phases)
+    done = count - missing_in(folders)
     results: list[ParticipantResult] = []
     with progress_bar("drives", count * phases, "") as bar:
 
@@ -154,17 +163,27 @@ def _drive(options: argparse.Namespace, folder: StudyResults, job: Job) -> None:
             on_cluster(options.scheduler) if options.scheduler else in_processes(options.jobs, show)
         )
         try:
-            run_missing(folder, job, run, note)
+            for folder in folders:
+                run_missing(folder, Job(folder.study.settings, fmus), run, note)
         except KeyboardInterrupt:
             bar.stop()
             print(
-                f"pldf: {count - len(folder.missing())} of {count} participants are done; "
+                f"pldf: {count - missing_in(folders)} of {count} participants are done; "
                 "the same command goes on with the others",
                 file=sys.stderr,
             )
             raise
     warnings = (warning for result in results for warning in result.warnings)
-    print_warnings(warnings, folder.study.notes)
+    print_warnings(warnings, study.notes)
+
+
+def _compare(folders: Sequence[StudyResults], out: Path) -> None:
+    """Write and draw what became of the drivers with each variant."""
+    from ..report.long_run import compare_variants  # noqa: PLC0415 - slow to import
+
+    written = compare_variants(folders, out)
+    print(f"Rates and errors of each drive are in {' and '.join(map(str, written))},")
+    print(f"the drives of each variant in a folder of its name, such as {folders[0].out / DRIVES}.")
 
 
 def _show(study: Study, out: Path) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..analysis.analysis import Analysis
 from ..analysis.checks import UNCHECKED, Checks
-from ..analysis.long_run import Columns, read_long_run
+from ..analysis.long_run import Columns, long_run_in
 from ..analysis.study_folder import StudyFolder
 from ..errors import ModelError
 from ..files.tables import read_table
@@ -32,7 +32,6 @@ from ..study.participants_file import PARTICIPANTS
 from ..study.study_file import read_study
 from .own_versions import read_parameters, read_text
 
-LONG_RUN: Final = "long_run.csv"
 _SAME_LIMIT_MPS: Final = 0.1
 _SAME_LIMIT_SHARE: Final = 0.95
 
@@ -73,7 +72,7 @@ class Contents:
         title: of the study.
         route: the road and its base profile.
         driver: one participant in detail; None without recordings.
-        long_run: columns of ``long_run.csv`` by stretch factor; empty if there is none.
+        long_run: columns of ``long_run.csv`` by variant; empty if there is none.
         texts: files to print in full for reproduction, by name.
         parameters: part (pldf, vehicle) -> FMI name -> value; as far as the run wrote them.
         participants: parameter of the simulated drivers -> smallest, median and largest value.
@@ -84,7 +83,7 @@ class Contents:
     title: str
     route: RouteFacts
     driver: DriverShown | None
-    long_run: Mapping[float, Columns]
+    long_run: Mapping[str, Columns]
     texts: Mapping[str, str]
     parameters: Mapping[str, Mapping[str, float]]
     participants: Mapping[str, tuple[float, float, float]]
@@ -125,15 +124,22 @@ def collect(
         analysis = replace(analysis, notes=(*analysis.notes, _road_assumed(study)))
     return Contents(
         analysis=analysis,
-        title=str(study.study_file.get("title", f"Study {folder.resolve().name}")),
+        title=_title(study),
         route=_facts(route, function),
         driver=None if shown is None else _driver(shown, study, route, function),
-        long_run=read_long_run(folder / LONG_RUN) if (folder / LONG_RUN).exists() else {},
+        long_run=long_run_in(folder),
         texts=texts,
         parameters=parameters,
         participants=_parameter_ranges(folder / "participants.csv"),
         checks=checks,
     )
+
+
+def _title(study: StudyFolder) -> str:
+    """Return the title that the study file gives, with the variant driven."""
+    title = str(study.study_file.get("title", f"Study {study.folder.resolve().name}"))
+    variant = study.study_file.get("variant")
+    return f"{title}: {variant}" if variant else title
 
 
 def _road_assumed(study: StudyFolder) -> Finding:

@@ -78,9 +78,10 @@ _FIGURES: Final = {
     ),
     "long_run": (
         "Drive after drive",
-        "Simulated drivers who intervene and are learned from in every drive, for several stretch "
-        "factors. The error is what remains between the profile and the drivers' hidden wish, "
-        "which no study with people can measure.",
+        "Simulated drivers who intervene and are learned from in every drive, with several "
+        "variants of the function. The errors are what remains between the profile and the "
+        "drivers' hidden wish, the one that lasts and that of the drive, which no study with "
+        "people can measure.",
     ),
     "plan": (
         "The road from above",

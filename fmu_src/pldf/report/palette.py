@@ -70,6 +70,10 @@ _SERIES: Final[tuple[tuple[str, Dash, Mark], ...]] = (
     (ORANGE, "dash", "square"),
     (BLUE, "solid", "triangle"),
     (GREEN, "dot", "diamond"),
+    (PURPLE, "dash", "circle"),
+    (SKY, "solid", "square"),
+    (BLACK, "dot", "triangle"),
+    (GREY, "dashdot", "diamond"),
 )
 
 

@@ -15,6 +15,9 @@ DRIVES: Final = "drives.csv"
 PARTICIPANTS: Final = "participants.csv"
 STUDY: Final = "study.toml"
 VERSIONS: Final = "versions.json"
+# Of a study with variants, beside their folders: how they compare.
+LONG_RUN_CSV: Final = "long_run.csv"
+COMPARED: Final = (LONG_RUN_CSV, "long_run.png")
 PARTS: Final = "parts"
 DAMAGED: Final = "damaged"
 TABLES: Final = (DRIVES, PARTICIPANTS, STUDY, VERSIONS)

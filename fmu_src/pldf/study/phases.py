@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -53,6 +53,22 @@ PHASES: Final = {
         Phase("B3", apply_learned=True, learn=False, intervenes=False),
     )
 }
+
+
+def repeated(names: Iterable[str], repeats: int) -> list[Phase]:
+    """Return the phases of these names, each ``repeats`` times in a row.
+
+    Driven more than once, they are numbered on per system: A1, A2, ..., B1, B2, ...
+    """
+    phases = [PHASES[name] for name in names for _ in range(repeats)]
+    if repeats == 1:
+        return phases
+    counts = {"A": 0, "B": 0}
+    for at, phase in enumerate(phases):
+        system = phase.name[0]
+        counts[system] += 1
+        phases[at] = phase._replace(name=f"{system}{counts[system]}")
+    return phases
 
 
 def seed_of_drive(first: int, drive: int) -> int:

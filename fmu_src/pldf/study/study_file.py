@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
 from msgspec.structs import asdict
 
+from ..cosim.values import Value
 from ..errors import ModelError
 from ..findings import Finding
 from ..roads import Road, RoadOptions, open_road
 from ..roads.options import OptionNeededError, said
 from ..toml_file import Key, TomlFile, shown
 from .participants import Participant, StudySettings
-from .phases import PHASES, Phase
+from .phases import PHASES, Phase, repeated
 from .study_parameters import function_of, parameters_of
 from .study_people import check_thresholds, people_of, recorded_of
 from .study_tables import StudyTables
+from .study_variants import variants_of
 
 # The packaged study of one driver through the FMUs.
 ONE_DRIVER: Final = "one_driver"
@@ -38,6 +40,7 @@ class Study:
         out: where the results go.
         source: the file's content, with the changes asked for.
         notes: how the road and the list of participants were read.
+        variants: the studies to be driven in its place, by name: the same but for the function.
     """
 
     title: str
@@ -47,6 +50,7 @@ class Study:
     out: Path
     source: str
     notes: tuple[Finding, ...] = ()
+    variants: Mapping[str, Study] = field(default_factory=dict)
 
 
 def study_path(name: str) -> Path:
@@ -90,7 +94,7 @@ def read_study(path: Path, changes: Mapping[Key, Any] | None = None) -> Study:
         threshold_growth_per_drive=tables.drives.threshold_growth_per_drive,
     )
     check_thresholds(file, settings, people)
-    return Study(
+    study = Study(
         title=tables.title or path.stem,
         settings=settings,
         participants=people,
@@ -98,6 +102,22 @@ def read_study(path: Path, changes: Mapping[Key, Any] | None = None) -> Study:
         out=Path(tables.output or f"out/{path.stem}"),
         source=file.text,
         notes=(*settings.road.route.notes, *notes),
+    )
+    variants = {name: _variant(study, name, own) for name, own in variants_of(file).items()}
+    if tables.variant:
+        return replace(variants[tables.variant], source=file.text)
+    return replace(study, variants=variants)
+
+
+def _variant(study: Study, name: str, parameters: Mapping[str, Value]) -> Study:
+    """Return a variant as a study of its own, whose file says which one of them it is."""
+    function = {**study.settings.function, **parameters}
+    return replace(
+        study,
+        title=f"{study.title}: {name}",
+        settings=replace(study.settings, function=function),
+        out=study.out / name,
+        source=f"variant = {shown(name)}\n{study.source}",
     )
 
 
@@ -134,19 +154,10 @@ def _keys(options: RoadOptions) -> str:
 
 def _phases(file: TomlFile, tables: StudyTables) -> tuple[Phase, ...]:
     """Return the phases in order; driven more than once, they are numbered on per system."""
-    names, repeats = tables.drives.phases, tables.drives.per_phase
+    names = tables.drives.phases
     key = ("drives", "phases")
     if not names:
         file.fail(key, f"empty; choose out of {', '.join(PHASES)}")
     if len(set(names)) < len(names):
         file.fail(key, "an item occurs twice")
-    phases = [PHASES[name] for name in names for _ in range(repeats)]
-    if repeats == 1:
-        return tuple(phases)
-    counts = {"A": 0, "B": 0}
-    numbered = []
-    for phase in phases:
-        system = phase.name[0]
-        counts[system] += 1
-        numbered.append(phase._replace(name=f"{system}{counts[system]}"))
-    return tuple(numbered)
+    return tuple(repeated(names, tables.drives.per_phase))

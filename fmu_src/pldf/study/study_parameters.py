@@ -70,26 +70,31 @@ def changes_of(settings: Mapping[str, str]) -> dict[Key, Any]:
     return changes
 
 
-def parameters_of(file: TomlFile, table: str) -> dict[str, float | int]:
-    """Return what ``table`` sets, by FMI name; enumerations and Booleans as numbers.
+def parameters_of(file: TomlFile, part: str, *table: str) -> dict[str, float | int]:
+    """Return what a table of ``part`` sets, by FMI name; enumerations and Booleans as numbers.
+
+    Args:
+        file: the study file.
+        part: whose parameters these are, a key of ``SETTABLE``.
+        table: where they stand; left out: in the table of this name.
 
     Raises:
         ModelError: naming file, line, key and the allowed values.
     """
-    known = SETTABLE[table]
-    read = file.read(parameter_table(known.values()), table)
+    known = SETTABLE[part]
+    place = table or (part,)
+    read = file.read(parameter_table(known.values()), *place)
     return {
-        name: _coded(known[name], getattr(read, known[name].field))
-        for name in file.table.get(table, {})
+        name: _coded(known[name], getattr(read, known[name].field)) for name in file.within(*place)
     }
 
 
-def function_of(file: TomlFile) -> dict[str, float | int]:
+def function_of(file: TomlFile, *table: str) -> dict[str, float | int]:
     """Return the parameters of the driving function; ``learn`` is how drives learn that do."""
-    values = parameters_of(file, "function")
+    values = parameters_of(file, "function", *table)
     if values.get("learn", LEARN_FAITHFUL) == LEARN_OFF:
         file.fail(
-            ("function", "learn"),
+            (*(table or ("function",)), "learn"),
             '"OFF": the drives say whether they learn, this says how: write "FAITHFUL" or '
             '"CONSISTENT", or choose drives that do not learn in [drives], such as A1',
         )

@@ -97,6 +97,7 @@ class StudyTables(Struct, forbid_unknown_fields=True, frozen=True):
 
     title: Text = ""
     output: Text = ""
+    variant: Text = ""
     participants: ParticipantsTable = ParticipantsTable()
     drives: DrivesTable = DrivesTable()
     road: RoadTable = RoadTable()
@@ -105,6 +106,7 @@ class StudyTables(Struct, forbid_unknown_fields=True, frozen=True):
     driver: dict[str, Any] | None = None
     distribution: dict[str, Any] = {}
     recordings: RecordingsTable = RecordingsTable()
+    variants: dict[str, Any] = {}
 
 
 def parameter_table(signals: Iterable[Signal]) -> type[Struct]:

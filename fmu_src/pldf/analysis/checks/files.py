@@ -28,6 +28,7 @@ from ...study.participants_file import read_participants
 from ...study.study_file import read_study
 from ..drives_table import read_drives
 from ..exclusions import read_exclusions
+from ..long_run import read_long_run
 from ..problems import findings_of
 from ..questionnaires import read_questionnaire, survey_map
 from .asam import asam_findings
@@ -36,8 +37,8 @@ from .kinds import PEOPLE, Kind, is_opendrive, kind_of
 from .names import people
 
 _UNKNOWN: Final = (
-    "neither a road, a recording, a questionnaire, a table of drives or participants, a driver "
-    "or traffic script, a profile, a study file nor a mapping file"
+    "neither a road, a recording, a questionnaire, a table of drives or participants, a long "
+    "run, a driver or traffic script, a profile, a study file nor a mapping file"
 )
 
 
@@ -178,6 +179,11 @@ def _profile(path: Path, _known: Known) -> list[Finding]:
     return [Finding("note", str(path), 0, "", text)]
 
 
+def _long_run(path: Path, _known: Known) -> list[Finding]:
+    text = f"a long run with the variants {', '.join(read_long_run(path))}"
+    return [Finding("note", str(path), 0, "", text)]
+
+
 def _study_file(path: Path, _known: Known) -> list[Finding]:
     study = read_study(path)
     text = f"a study of {len(study.participants)} participants: {study.title}"
@@ -193,6 +199,7 @@ def _map(path: Path, _known: Known) -> list[Finding]:
 _CHECKS: Final[Mapping[Kind, Callable[[Path, Known], list[Finding]]]] = {
     "road": _road,
     "drives": _drives,
+    "long run": _long_run,
     "questionnaire": _questionnaire,
     "participants": _participants,
     "people": _people,

@@ -18,10 +18,11 @@ from ...recordings.mapping import PARTS
 from ...roads.csv_file import ROUTE
 from ...study.drive_row import DRIVES
 from ...study.participants_file import PARTICIPANTS
+from ..long_run import LONG_RUN
 from ..questionnaires.scales import asked_by
 
 Kind = Literal[
-    "road", "recording", "questionnaire", "drives", "participants", "people",
+    "road", "recording", "questionnaire", "drives", "long run", "participants", "people",
     "exclusions", "driver script", "traffic script", "profile",
     "study file", "mapping file", "",
 ]  # fmt: skip
@@ -36,6 +37,7 @@ _FORMATS: Final[dict[Kind, Format]] = {
     "recording": RECORDING,
     "road": ROUTE,
     "drives": DRIVES,
+    "long run": LONG_RUN,
     "participants": PARTICIPANTS,
     "driver script": SCRIPT,
     "traffic script": TRAFFIC_SCRIPT,

@@ -20,9 +20,11 @@ from .speeds import SPEED, base_line, distance_axis, limit_line, speed_line, zer
 STEPS: Final = ("1 recorded", "2 stretched", "3 offset", "4 mean", "5 smoothed")
 _LONG_RUN: Final = {
     "combined_percent": Axis("Pedals or set speed", note="(% of the time)", low=0.0),
-    "pedal_percent": Axis("Pedals", note="(% of the time)", low=0.0),
     "content_percent": Axis("Drivers who", note="did nothing (%)", low=0.0),
-    "wish_error_kmh": Axis("Profile minus wish,", note="RMS (km/h)", low=0.0),
+    "pedal_percent": Axis("Pedals", note="(% of the time)", low=0.0),
+    "set_speed_percent": Axis("Set speed", note="(% of the time)", low=0.0),
+    "wish_error_kmh": Axis("Profile minus lasting", note="wish, RMS (km/h)", low=0.0),
+    "drive_wish_error_kmh": Axis("Profile minus wish of", note="the drive, RMS (km/h)", low=0.0),
 }
 
 
@@ -87,8 +89,8 @@ def steps(steps: Steps) -> Scene:
     return Scene((Panel(lines, x, SPEED, 3.6),), width_in=9.0, stages=STEPS)
 
 
-def long_run(runs: Mapping[float, Columns]) -> Scene:
-    """Return rates, content drivers and remaining error over drives, per stretch factor."""
+def long_run(runs: Mapping[str, Columns]) -> Scene:
+    """Return rates, content drivers and remaining errors over drives, per variant."""
     return Scene(
         tuple(
             Panel(_runs(runs, column), Axis("Drive"), axis, 2.2)
@@ -99,11 +101,11 @@ def long_run(runs: Mapping[float, Columns]) -> Scene:
     )
 
 
-def _runs(runs: Mapping[float, Columns], column: str) -> tuple[Element, ...]:
+def _runs(runs: Mapping[str, Columns], column: str) -> tuple[Element, ...]:
     return tuple(
         Line(
             np.asarray(columns["drive"], float), np.asarray(columns[column], float),
-            palette.series(number), f"Stretch factor {factor:g}",
+            palette.series(number), variant,
         )
-        for number, (factor, columns) in enumerate(runs.items())
+        for number, (variant, columns) in enumerate(runs.items())
     )  # fmt: skip
