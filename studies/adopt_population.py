@@ -2,9 +2,9 @@
 
     python studies/adopt_population.py          # after studies/fit_population.py
 
-The paper's study and studies/long_run.toml get the distribution of studies/population.toml. The
-study of one driver gets the typical participant of the paper's study (pldf/study/typical.py), who
-is also recorded there: the example of README and report is chosen by a rule, not by hand.
+The paper's study and the long runs get the distribution of studies/population.toml. The study of
+one driver gets the typical participant of the paper's study (pldf/study/typical.py), who is also
+recorded there: the example of README and report is chosen by a rule, not by hand.
 """
 
 from __future__ import annotations
@@ -20,7 +20,9 @@ from pldf.study.study_file import ONE_DRIVER, PACKAGED, read_study
 from pldf.toml_file import shown
 
 POPULATION: Final = Path(__file__).with_name("population.toml")
-LONG_RUN: Final = Path(__file__).with_name("long_run.toml")
+LONG_RUNS: Final = tuple(
+    Path(__file__).with_name(f"{name}.toml") for name in ("long_run", "stretch_factor")
+)
 # A table's lines up to the next empty one.
 _DISTRIBUTION: Final = re.compile(r"(?<=^\[distribution\]\n)(.+\n)+", re.MULTILINE)
 _DRIVER: Final = re.compile(r"(?<=^\[driver\]\n)(.+\n)+", re.MULTILINE)
@@ -72,7 +74,8 @@ def _rewrite(path: Path, what: re.Pattern[str], new: str) -> None:
 def main() -> int:
     """Write and say who the example is."""
     paper, one_driver = (PACKAGED / f"{name}.toml" for name in ("paper", ONE_DRIVER))
-    take_over(POPULATION, LONG_RUN)
+    for study in LONG_RUNS:
+        take_over(POPULATION, study)
     person = adopt(POPULATION, paper, one_driver)
     print(f"{person.id} is the typical person, now in {one_driver}")
     return 0

@@ -178,10 +178,15 @@ def test_studies_have_different_people_with_numbers_of_their_own() -> None:
     assert first[0].values != second[0].values
 
 
-def test_the_long_run_is_driven_by_the_people_of_the_papers_study() -> None:
-    long_run, paper = read_study(STUDIES / "long_run.toml"), read_study(study_path("paper"))
-    assert long_run.participants == paper.participants
-    assert [phase.name for phase in long_run.settings.phases] == [f"B{k + 1}" for k in range(30)]
+@pytest.mark.parametrize("name", ["long_run", "stretch_factor"])
+def test_long_runs_are_driven_by_the_people_of_the_papers_study(name: str) -> None:
+    study = read_study(STUDIES / f"{name}.toml")
+    assert study.participants == read_study(study_path("paper")).participants
+    assert [phase.name for phase in study.settings.phases] == [f"B{k + 1}" for k in range(30)]
+
+
+def test_the_long_run_has_every_gain_with_every_way_of_learning() -> None:
+    long_run = read_study(STUDIES / "long_run.toml")
     found = {
         (int(one.settings.function["learn"]), one.settings.function["learning.set_speed_gain"])
         for one in long_run.variants.values()
