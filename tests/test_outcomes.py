@@ -41,7 +41,7 @@ def pattern(name: str) -> str:
 
 
 # What have tests of their own.
-ELSEWHERE = {"MORE", "FORGOTTEN", "UNDONE", "SET_FORGOTTEN", "SET_UNDONE"}
+ELSEWHERE = {"MORE", "FORGOTTEN", "UNDONE", "SET_FORGOTTEN", "SET_SHARE", "SET_UNDONE"}
 # Said only where evidence decides.
 OF_EVIDENCE = {name for name in TEXTS if "PENDING" in name or "EVIDENCE" in name or "_BY_" in name}
 
