@@ -72,6 +72,16 @@ def test_nothing_is_learned_of_the_lever_with_a_gain_of_nothing() -> None:
     assert not np.any(learned[-1].offset_mps)
 
 
+def test_where_no_lever_was_moved_nothing_changes_to_the_bit() -> None:
+    first, stored = lesson(0.81, [91.0])
+    made = set_by([(2500.0, 3001.0, 94.0)], stored=stored)
+    made.record.learning_set_speed_gain = 0.81
+    second = made.learn()
+    before, after_it = np.array(first[0].offset_mps), np.array(second.offset_mps)
+    assert before[1700] > 0.0 and after_it[2700] < 0.0
+    assert after_it[:2000].tobytes() == before[:2000].tobytes()
+
+
 def test_the_plan_is_that_of_the_smaller_offset() -> None:
     """As if the driver had set half as much, and all of it had been learned."""
     halved, _ = lesson(0.5, [90.0])

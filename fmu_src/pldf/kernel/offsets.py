@@ -34,12 +34,12 @@ def adopt_offsets(st: PldfState, drive: Drive) -> None:
 def approach_offsets(st: PldfState, profile: ProfileArrays, following: NextArrays) -> None:
     """Go the share ``learning_set_speed_gain`` of the way from the offsets driven to those adopted.
 
-    With a gain of 1 these are the ones adopted, to the bit.
+    Where no other offset was adopted nothing changes, to the bit.
     """
     gain = st.learning_set_speed_gain
     for cell in range(len(following.offset_mps)):
         driven, adopted = profile.offset_mps[cell], following.offset_mps[cell]
-        following.offset_mps[cell] = gain * adopted + (1.0 - gain) * driven
+        following.offset_mps[cell] = driven + gain * (adopted - driven)
 
 
 def _find_series(st: PldfState, drive: Drive) -> None:
