@@ -159,6 +159,8 @@ def test_another_file_needs_a_restart_which_drives_all_anew(
         ("[variants.x]\n'learning.speed_gain' = 1", "did you mean learning.set_speed_gain?"),
         ("[variants.x]\nlearn = 'OFF'", 'line 14, variants.x.learn: "OFF": the drives say'),
         ("[variants.'../x']", "line 13, variants.../x: is the name of a folder"),
+        ("[variants.'long_run.csv']", "a device of Windows or a file of the study"),
+        ("[variants.Con]", "line 13, variants.Con: is the name of a folder, and this one"),
         ("[variants.x]\n[variants.X]", "variants.x: the same folder as X"),
         ("[variants]\nx = 3", 'line 14, variants.x: 3 is no variant: write [variants."NAME"]'),
     ],

@@ -12,8 +12,9 @@ from typing import Final
 from ..toml_file import TomlFile, listed, shown
 from .study_parameters import function_of
 
-# What every file system takes as the name of a folder, and no file of a study is called.
+# What every file system takes as the name of a folder, and no file beside it is called.
 _NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9 _.+-]{0,58}[A-Za-z0-9]|[A-Za-z0-9]")
+_TAKEN: Final = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?|long_run\..*", re.IGNORECASE)
 _KIND: Final = 'write [variants."NAME"] and below it parameters of [function]'
 
 
@@ -42,6 +43,12 @@ def _require_name(file: TomlFile, name: str, names: list[str]) -> None:
             key,
             "is the name of a folder: write letters, digits, spaces and _ . + - (up to 60), the "
             "first and the last one a letter or a digit",
+        )
+    if _TAKEN.fullmatch(name):
+        file.fail(
+            key,
+            "is the name of a folder, and this one is a device of Windows or a file of the study: "
+            "write another name",
         )
     same = [other for other in names if other.lower() == name.lower() and other != name]
     if same:
