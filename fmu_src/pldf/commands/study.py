@@ -62,8 +62,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``pldf study``."""
     parser.add_argument(
         "file", nargs="?", metavar="FILE",
-        help="study file (TOML), or 'paper', the paper's study; without it: one driver through "
-        f"the FMUs ('{ONE_DRIVER}', a study file too), with figures",
+        help="study file (TOML), or 'paper', the paper's study ('paper_constant_wish': with "
+        "drivers of one wish for ever); without it: one driver through the "
+        f"FMUs ('{ONE_DRIVER}', a study file too), with figures",
     )  # fmt: skip
     parser.add_argument(
         "--out", type=Path, metavar="FOLDER", help="where everything is written (default: FILE's)"
