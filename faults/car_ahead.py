@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pldf.compiled import KERNEL_MODULES, Namespace, compile_modules, pack
+from pldf.compiled import Namespace, compile_modules, kernel, pack
 from pldf.instance import zeros
 from pldf.kernel.arrays import FloatArray, ProfileArrays, RouteArrays, TraceArrays, Work
 from pldf.kernel.codes import ACTIVE, STANDBY
@@ -51,9 +51,8 @@ class Road(NamedTuple):
 @cache
 def machine_code() -> Namespace:
     """Return the compiled functions of the function, the vehicle, the drive and the judge."""
-    function = compile_modules(KERNEL_MODULES, inline=True)
-    vehicle = compile_modules((vehicle_kernel,), function, inline=True)
-    called = {**function, **vehicle}
+    vehicle = compile_modules((vehicle_kernel,), kernel(), inline=True)
+    called = {**kernel(), **vehicle}
     return {**called, **compile_modules((watched_drive, watched_follow), called, inline=True)}
 
 

@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pldf.compiled import KERNEL_MODULES, Namespace, compile_modules, pack
+from pldf.compiled import Namespace, compile_modules, kernel, pack
 from pldf.instance import zeros
 from pldf.kernel.arrays import FloatArray, NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from pldf.kernel.codes import LEARN_FAITHFUL
@@ -55,9 +55,8 @@ class Road(NamedTuple):
 @cache
 def machine_code() -> Namespace:
     """Return the compiled functions of the function, the vehicle and the drive."""
-    function = compile_modules(KERNEL_MODULES, inline=True)
-    vehicle = compile_modules((vehicle_kernel,), function, inline=True)
-    called = {**function, **vehicle}
+    vehicle = compile_modules((vehicle_kernel,), kernel(), inline=True)
+    called = {**kernel(), **vehicle}
     return {**called, **compile_modules((watched_drive,), called, inline=True)}
 
 

@@ -118,8 +118,8 @@ _LOCATOR: Final = "pldf.kernel_cache.BySource"
 
 @cache
 def kernel() -> Namespace:
-    """Return the compiled functions of the driving function's kernel by name."""
-    return compile_modules(KERNEL_MODULES)
+    """Return the compiled functions of the driving function's kernel by name, as studies drive."""
+    return compile_modules(KERNEL_MODULES, inline=True)
 
 
 def compile_modules(

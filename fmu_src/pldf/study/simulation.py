@@ -22,7 +22,7 @@ from vehicle_models.script_kernel import ScriptArrays
 from vehicle_models.vehicle import LongitudinalVehicle
 from vehicle_models.wish_kernel import WishArrays
 
-from ..compiled import KERNEL_MODULES, Namespace, compile_modules, pack, unpack
+from ..compiled import KERNEL_MODULES, Namespace, compile_modules, kernel, pack, unpack
 from ..cosim.drive_limits import SLOWEST_MPS, STANDSTILL_MAX_S, STANDSTILL_MPS
 from ..cosim.values import Value
 from ..errors import ModelError
@@ -76,10 +76,9 @@ def prepared(settings: StudySettings) -> Simulation:
 @cache
 def machine_code() -> Namespace:
     """Return the compiled functions of kernel, driver and loop by name."""
-    function = compile_modules(KERNEL_MODULES, inline=True)
-    vehicle = compile_modules((vehicle_kernel,), function, inline=True)
-    driver = compile_modules(DRIVER_KERNELS, function, inline=True)
-    called = {**function, **vehicle, **driver}
+    vehicle = compile_modules((vehicle_kernel,), kernel(), inline=True)
+    driver = compile_modules(DRIVER_KERNELS, kernel(), inline=True)
+    called = {**kernel(), **vehicle, **driver}
     return {**called, **compile_modules((loop,), called, inline=True)}
 
 
