@@ -1,7 +1,7 @@
 """Imported by the process that those of a study are forked from, as what it is to have ready.
 
 Numba and the machine code are loaded here, or compiled, once for all of them: that takes a second,
-or ten. This is why importing the module has an effect; nothing else imports it.
+or two minutes. This is why importing the module has an effect; nothing else imports it.
 """
 
 from __future__ import annotations
