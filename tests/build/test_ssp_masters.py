@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -76,9 +77,12 @@ def speeds(
     return {**found, trial.second: driven(trial, trial.second, store)}
 
 
-def driven(trial: Trial, phase: str, store: Path) -> FloatArray:
+def driven(
+    trial: Trial, phase: str, store: Path, person: Mapping[str, float] | None = None
+) -> FloatArray:
     values = start_values(PHASES[phase], list(PHASES).index(phase))
     values["pldf"]["profile_store"] = str(store)
+    values["driver"].update(person or {})
     length_m = min(30.0 * trial.seconds, packed_route(0).nodes - 1.0)
     recording = drive(trial.fmus, values, length_m, STEP_S).recording
     assert recording["time_s"][-1] > trial.seconds
@@ -116,6 +120,56 @@ def test_the_same_drives_in_another_importer(
     # Their drive ends before ours: compared is where both had driven.
     assert np.max(np.abs(theirs.learned_mps - ours.learned_mps)[:500]) < TOLERANCE_MPS
     assert len(stored(second).iterations) == 2
+
+
+VARYING: dict[str, float] = {
+    "person_seed": 77,
+    "wish.offset_person_sd_mps": 1.0,
+    "wish.offset_place_sd_mps": 0.8,
+    "wish.offset_occasion_sd_mps": 0.6,
+    "wish.lateral_person_sigma": 0.2,
+    "wish.lateral_place_sigma": 0.15,
+    "wish.lateral_occasion_sigma": 0.1,
+}
+
+
+def with_person(package: Path, folder: Path) -> Path:
+    """Return a copy of ``package`` whose driver has the values of ``VARYING``."""
+    edited = folder / package.name
+    with ZipFile(package) as old, ZipFile(edited, "w") as new:
+        for name in old.namelist():
+            text = old.read(name)
+            if name.endswith("driver.ssv"):
+                text = _edited(text.decode()).encode()
+            new.writestr(name, text)
+    return edited
+
+
+def _edited(values: str) -> str:
+    written = f'name="person_seed">\n      <ssv:Integer value="{VARYING["person_seed"]}" />'
+    values, count = re.subn(r'name="person_seed">\s*<ssv:Integer value="1" ?/>', written, values)
+    assert count == 1
+    more = "".join(
+        f'<ssv:Parameter name="{name}"><ssv:Real value="{value}" /></ssv:Parameter>'
+        for name, value in VARYING.items()
+        if name != "person_seed"
+    )
+    return values.replace("</ssv:Parameters>", f"{more}</ssv:Parameters>")
+
+
+@ON_PYPI
+@pytest.mark.parametrize("importer", IMPORTERS)
+def test_a_person_whose_wish_varies_drives_the_same_in_a_package(
+    importer: str, trial: Trial, speeds: dict[str, FloatArray], tmp_path: Path
+) -> None:
+    ours = driven(trial, trial.first, tmp_path / "ours", VARYING)
+    package = with_person(trial.folder / f"study_{trial.first}.ssp", tmp_path)
+    arguments = ["ssp_masters.py", importer, package, trial.seconds]
+    rows = run(arguments, tmp_path / "theirs", tmp_path / "out.npy")
+    step = np.rint(rows[:, 0] / STEP_S).astype(int)
+    after = rows[:, 0] >= COMPARED_FROM_S
+    assert np.max(np.abs(rows[:, 1] - ours[step])[after]) < TOLERANCE_MPS
+    assert np.max(np.abs(rows[:, 1] - speeds[trial.first][step])) > 0.5  # not the usual person
 
 
 def test_what_was_learned_shows_in_the_second_drive(
