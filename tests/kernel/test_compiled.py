@@ -115,9 +115,11 @@ class Bench:
         given = (self.st, self.route, self.profile, self.trace, self.work, self.following)
         for name in ("evidence_slower", "pending_slower"):  # what this drive keeps silent about
             np.asarray(getattr(self.profile, name))[:] = 1.0
-        # The same drive, three times: evidence waits, then accepts; then all is learned at once.
-        for learn in (LEARN_CONSISTENT, LEARN_CONSISTENT, LEARN_FAITHFUL):
-            self.st.learn = learn
+        # The same drive again and again: evidence waits, then accepts, a share of the set speed;
+        # then all is learned at once.
+        rounds = ((LEARN_CONSISTENT, 1.0), (LEARN_CONSISTENT, 0.6), (LEARN_FAITHFUL, 1.0))
+        for learn, gain in rounds:
+            self.st.learn, self.st.learning_set_speed_gain = learn, gain
             self.functions["learn_drive"](*given)
             for name in LEARNED:
                 following = np.asarray(getattr(self.following, name))
