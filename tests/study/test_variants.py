@@ -91,6 +91,15 @@ def test_each_can_be_analysed(driven: Path, tmp_path: Path) -> None:
     assert "two of them: half careful" in report.read_text(encoding="utf-8")
 
 
+def test_who_names_the_folder_of_all_is_sent_to_one_of_them(
+    driven: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["analyse", str(driven)]) == 1
+    assert f"2 of its folders have drives: name one of them, such as '{driven / NAMES[0]}'" in (
+        capsys.readouterr().err
+    )
+
+
 def test_they_are_compared_drive_by_drive(driven: Path) -> None:
     found = read_long_run(driven / "long_run.csv")
     assert list(found) == list(NAMES)

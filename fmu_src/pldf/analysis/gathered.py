@@ -63,7 +63,7 @@ def gather(study: StudyFolder, reading: Reading) -> Gathered:
     elif not study.files():
         raise ModelError(
             f"{study.folder}: no drives.csv and no recordings/PARTICIPANT_PHASE.csv to analyse; "
-            "name a folder that 'pldf study' wrote, or put recordings there"
+            f"{_way_out(study.folder)}"
         )
     else:
         _read_recordings(study, found, reading)
@@ -72,6 +72,14 @@ def gather(study: StudyFolder, reading: Reading) -> Gathered:
     found.problems = brought_together(found.problems)
     found.notes = brought_together(found.notes)
     return found
+
+
+def _way_out(folder: Path) -> str:
+    """Return what to do in a folder without drives, which may be that of a study with variants."""
+    within = sorted(table.parent for table in folder.glob(f"*/{DRIVES}"))
+    if within:
+        return f"{len(within)} of its folders have drives: name one of them, such as '{within[0]}'"
+    return "name a folder that 'pldf study' wrote, or put recordings there"
 
 
 def _apart(study: StudyFolder, found: Gathered) -> Iterator[Finding]:
