@@ -88,12 +88,21 @@ class TomlFile:
             declared, value = _fields(declared)[name], value[name]
         key = (*table, *names)
         if unknown:
-            is_table = isinstance(value[unknown[1]], dict)
-            known = [n for n, t in _fields(declared).items() if _is_table(t) or not is_table]
-            self.unknown((*key, unknown[1]), known)
+            self._unknown_here((*key, unknown[1]), declared, isinstance(value[unknown[1]], dict))
         if at and at["item"] and get_origin(declared) is not Annotated:
             declared, value = get_args(declared)[0], value[int(at["item"])]
         self.fail(key, f"{shown(value)} must be {_allowed(declared, key)}")
+
+    def _unknown_here(self, key: Key, declared: type[msgspec.Struct], is_table: bool) -> NoReturn:
+        """Fail because the structure declared has no ``key``."""
+        known = [n for n, t in _fields(declared).items() if _is_table(t) or not is_table]
+        if not known:
+            self.fail(
+                key,
+                f"is a table, and [{'.'.join(key[:-1])}] has none within; a name with dots is "
+                'written in quotes, such as "learning.weight"',
+            )
+        self.unknown(key, known)
 
     def unknown(self, key: Key, known: Iterable[str]) -> NoReturn:
         """Fail because ``key`` is not one of ``known``."""

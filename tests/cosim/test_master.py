@@ -256,6 +256,14 @@ def test_what_an_fmu_refuses_is_told_once_and_leaves_no_harm(
     assert driven(fmus, PHASES["A3"], setting(), 200.0).arrived
 
 
+def test_fmus_that_lack_a_variable_are_named_with_the_way_out(fmus: dict[str, Fmu]) -> None:
+    """Those of an older release have not all parameters that are set today."""
+    with pytest.raises(ModelError) as refused:
+        driven(fmus, PHASES["A3"], setting(driver={"wish.later": 1.0}))
+    assert str(refused.value).startswith("ScriptedDriver: this FMU has no variable wish.later")
+    assert str(refused.value).endswith("build all FMUs anew with 'pldf build'")
+
+
 def test_what_the_fmus_say_is_kept(
     fmus: dict[str, Fmu], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -146,6 +146,13 @@ ERRORS = {
     '[function]\n"learning.stretch" = 9.0': (
         "line 2, function.learning.stretch: unknown; did you mean learning.stretch"
     ),
+    "[function]\nlearning.weight = 0.4": (
+        "line 1, function.learning: is a table, and [function] has none within; a name with dots "
+        "is written in quotes"
+    ),
+    "[variants.x.function]\nlearn = 'CONSISTENT'": (
+        "line 1, variants.x.function: is a table, and [variants.x] has none within"
+    ),
     "[function]\nlearn_faithful = true": "line 2, function.learn_faithful: unknown",
     "[function]\nlearn = 1": 'line 2, function.learn: 1 must be one of "OFF", "FAITHFUL", ',
     '[function]\nlearn = "OFF"': 'line 2, function.learn: "OFF": the drives say whether they learn',

@@ -181,6 +181,11 @@ class Slave:
     def set(self, values: Mapping[str, Value]) -> None:
         """Set parameters and unconnected inputs before initialization."""
         for name, value in values.items():
+            if name not in self.fmu.signals:
+                raise ModelError(
+                    f"{self.name}: this FMU has no variable {name} (version "
+                    f"{self.fmu.description.version}); build all FMUs anew with 'pldf build'"
+                )
             kind = self.fmu.signals[name].kind
             setter = getattr(self._slave, f"set{'Integer' if kind == 'Enumeration' else kind}")
             self._call(setter, [self.fmu.references[name]], [value])
