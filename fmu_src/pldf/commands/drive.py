@@ -53,6 +53,11 @@ _BY_ITSELF: Final = Path()  # --traffic without a script
 _DRIVING_MPS: Final = 5.0  # below, a time gap says nothing
 _CHANGED_MPS: Final = 0.1 / KMH_PER_MPS  # smaller changes do not count as learned
 
+_SEED_OF: Final = (
+    "the drive: small irregularities of the driver, the occasion's part of the wish, and traffic "
+    "(default: 1)"
+)
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``pldf drive``."""
@@ -90,9 +95,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--plot", type=Path, metavar="PNG", help="picture (default: beside the recording)"
     )
-    add_coupling(
-        parser, 1, "the drive: small irregularities of the driver, and traffic (default: 1)"
-    )
+    add_coupling(parser, 1, _SEED_OF)
     add_fmu(parser, NATIVE_IF_GOOD)
     parser.set_defaults(wrong_usage=parser.error)
 
