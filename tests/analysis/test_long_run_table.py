@@ -93,6 +93,10 @@ def test_of_two_systems_the_one_that_learns_counts(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
+        (
+            "stretch_factor,drive,pedal_percent\n0.5,1,20\n",
+            "long_run.csv: a long run by stretch factor, as releases before 0.3 wrote it; move it",
+        ),
         (HEADER.replace("pedal_", "gas_"), "long_run.csv, line 1: missing column pedal_percent"),
         (
             f"{HEADER}\nx,B1,y,1,1,1,1,1",

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 import scipy.stats
 
+from ..errors import ModelError
 from ..files.tables import Cell, Column, Format, read_table, write_table
 from ..kernel.units import KMH_PER_MPS
 from ..study.drive_row import PHASE, DriveRow
@@ -112,6 +113,7 @@ def read_long_run(path: Path) -> dict[str, Columns]:
     Raises:
         ModelError: naming file, line, column and value of what cannot be used.
     """
+    _refuse_older(path)
     table = read_table(path, LONG_RUN)
     phases, variants = table.texts["phase"], np.array(table.texts["variant"])
     system = max(phases, default="B")[0]
@@ -126,3 +128,12 @@ def read_long_run(path: Path) -> dict[str, Columns]:
         }
         for variant in dict.fromkeys(table.texts["variant"])
     }
+
+
+def _refuse_older(path: Path) -> None:
+    """Fail with the way out if the file is one that a script of releases before 0.3 wrote."""
+    if path.is_file() and path.read_bytes().startswith(b"stretch_factor,"):
+        raise ModelError(
+            f"{path}: a long run by stretch factor, as releases before 0.3 wrote it; move it "
+            "elsewhere, or drive it anew with 'pldf study studies/stretch_factor.toml'"
+        )
