@@ -169,7 +169,8 @@ def _tests(analysis: Analysis) -> Table:
 
 
 def _remarks(analysis: Analysis) -> list[str]:
-    told = [f"Rates from {analysis.source}. Paper: {DRIVERS} drivers; * its test."]
+    told = [f"Rates from {analysis.source}. Paper: {DRIVERS} drivers; * the test that it used."]
+    told.append("d_z: Cohen's d of the differences; r: rank-biserial correlation.")
     if same := [name for name, found in analysis.comparisons.items() if not found.t.has_spread]:
         told.append(
             f"No spread: {', '.join(same)}; A - B is the same for everybody, so t and d_z are "

@@ -45,6 +45,8 @@ from .shared.road import required_road
 EXAMPLE: Final = (
     "pldf drive --phase A2 --store profiles --out out/A2.csv\n"
     "  pldf drive --phase B1 --store profiles --out out/B1.csv --set driver.wish.offset_mps=3\n"
+    "  pldf drive --seed 2 --set person_seed=7 --set wish.offset_person_sd_mps=1"
+    " --set wish.offset_occasion_sd_mps=0.6\n"
     "  pldf drive --driver script --script my_drive.csv --route road.xodr\n"
     "  pldf drive --traffic --driver none --seed 3"
 )
@@ -54,8 +56,8 @@ _DRIVING_MPS: Final = 5.0  # below, a time gap says nothing
 _CHANGED_MPS: Final = 0.1 / KMH_PER_MPS  # smaller changes do not count as learned
 
 _SEED_OF: Final = (
-    "the drive: small irregularities of the driver, the occasion's part of the wish, and traffic "
-    "(default: 1)"
+    "the drive: small irregularities of the driver, the occasion's part of the wish, and traffic; "
+    "who drives: --set person_seed=N (default: 1)"
 )
 
 
