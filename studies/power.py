@@ -194,11 +194,19 @@ def _count(n: float, people: int) -> str:
     return f"{n:.0f}" if np.isfinite(n) else f"more than {int(LARGEST_GROUP * people)}"
 
 
+def _level(text: str) -> float:
+    """Return a level of significance; at more than 0.5 chance would do."""
+    level = float(text)
+    if not 0.0 < level <= 0.5:
+        raise argparse.ArgumentTypeError(f"{text} must lie above 0 and be at most 0.5")
+    return level
+
+
 def main() -> int:
     """Draw and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path, help="with drives.csv or recordings")
-    parser.add_argument("--alpha", type=float, default=0.05, help="level, two-sided; default 0.05")
+    parser.add_argument("--alpha", type=_level, default=0.05, help="level, two-sided; default 0.05")
     options = parser.parse_args()
     try:
         fall = falls(analyse(StudyFolder(options.folder)))

@@ -112,6 +112,16 @@ def test_table_of_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     assert "| pedal, if d_z is the paper's 0.98 (noncentral t) | 11 | 14 | 16 |" in text
 
 
+@pytest.mark.parametrize("alpha", ["0", "5", "nan"])
+def test_a_level_that_is_none_is_refused(
+    alpha: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.argv", ["power.py", "out", "--alpha", alpha])
+    with pytest.raises(SystemExit):
+        power.main()
+    assert f"{alpha} must lie above 0 and be at most 0.5" in capsys.readouterr().err
+
+
 def test_too_few_people_are_told(tmp_path: Path) -> None:
     write_drives(tmp_path, 8)
     with pytest.raises(ModelError, match=r"8 participants; groups are drawn from at least 24"):
