@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.stats
-from pldf.analysis.long_run import MEASURES, long_run_in, read_long_run, write_long_run
+from pldf.analysis.long_run import MEASURES, long_run_of, read_long_run, write_long_run
 from pldf.errors import ModelError
 from pldf.files.tables import write_table
 from pldf.study.drive_row import COLUMNS, DriveRow
@@ -57,12 +57,13 @@ def test_means_and_intervals_are_those_of_scipy(tmp_path: Path) -> None:
     assert found == pytest.approx([25.0, 100 * (middle - half), 100 * (middle + half)], rel=1e-5)
 
 
-def test_of_one_driver_there_is_no_spread(tmp_path: Path) -> None:
+def test_one_driver_says_nothing_of_others(tmp_path: Path) -> None:
     table = tmp_path / "long_run.csv"
     write_long_run(table, {"alone": write_drives(tmp_path, SECOND[:1])})
     with table.open(encoding="utf-8", newline="") as file:
         _, last = csv.DictReader(file)
-    assert {last[f"pedal_percent{end}"] for end in ("", "_low", "_high")} == {"10"}
+    assert [last[f"pedal_percent{end}"] for end in ("_low", "", "_high")] == ["0", "10", "100"]
+    assert [last[f"wish_error_kmh{end}"] for end in ("_low", "_high")] == ["0", "inf"]
 
 
 def test_what_was_written_is_read_by_variant(tmp_path: Path) -> None:
@@ -70,15 +71,16 @@ def test_what_was_written_is_read_by_variant(tmp_path: Path) -> None:
     inside = tmp_path / "long_run"
     inside.mkdir()
     write_long_run(inside / "long_run.csv", drives)
-    found = long_run_in(tmp_path)
-    assert found == long_run_in(inside)
+    path = long_run_of(tmp_path)
+    assert path == long_run_of(inside) == inside / "long_run.csv"
+    found = read_long_run(path)
     assert list(found) == ["one", "half"]
     assert found["one"]["drive"] == [1.0, 2.0]
     assert found["half"]["content_percent"] == pytest.approx([100 / 3, 100 / 3], rel=1e-5)
 
 
 def test_without_a_long_run_there_is_none(tmp_path: Path) -> None:
-    assert long_run_in(tmp_path) == {}
+    assert long_run_of(tmp_path) is None
 
 
 def test_of_two_systems_the_one_that_learns_counts(tmp_path: Path) -> None:

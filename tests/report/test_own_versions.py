@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from pldf.errors import ModelError
 from pldf.kernel.state import PldfState
-from pldf.report.own_versions import read_parameters, read_text
+from pldf.report.own_versions import driven_otherwise, read_parameters, read_text
 from pldf.report.page import _table_of
 
 
@@ -40,3 +40,17 @@ def test_a_parameter_that_the_run_did_not_know_is_marked() -> None:
     shown = {signal.name: values[0] for signal, values in table.rows}
     assert shown["planner.accel_max_mps2"] == "1.5"
     assert shown["learning.offset_series_s"] == "not known to the run (5 here)"
+
+
+def test_a_long_run_of_another_release_is_told(tmp_path: Path) -> None:
+    variant = tmp_path / "long_run" / "gain 1"
+    variant.mkdir(parents=True)
+    own, other = tmp_path / "versions.json", variant / "versions.json"
+    assert driven_otherwise(tmp_path, variant.parent) == ()  # a laboratory's folder
+    own.write_text('{"source": "new"}')
+    other.write_text('{"source": "new"}')
+    assert driven_otherwise(tmp_path, variant.parent) == ()
+    other.write_text('{"source": "old"}')
+    (told,) = driven_otherwise(tmp_path, variant.parent)
+    assert (told.severity, told.place) == ("warning", "gain 1")
+    assert "--restart" in told.way_out

@@ -224,6 +224,27 @@ def test_explicit_participants_in_a_study(tmp_path: Path) -> None:
     ]
 
 
+DAYS = "seed,wish.offset_occasion_sd_mps\n"
+
+
+@pytest.mark.parametrize(
+    ("rows", "told"),
+    [
+        ("100,0.6\n103,0.6", "P001 and P002: seeds 100 and 103 are less than 6 drives apart;"),
+        ("103,0.6\n9,0.6\n100,0.6\n10,0.6", "seeds 9 and 10 are less than 6 drives apart, as do 1"),
+        ("100,0.6\n106,0.6", ""),
+        ("100,0.6\n101,0", ""),  # whose wish does not vary has no days
+        ("100,0.6\n100,0.6", ""),  # the same person twice, perhaps with another threshold
+    ],
+)
+def test_people_with_the_same_days_are_told(tmp_path: Path, rows: str, told: str) -> None:
+    (tmp_path / "people.csv").write_text(DAYS + rows)
+    notes = study(tmp_path, '[participants]\nfile = "people.csv"').notes
+    warned = [str(note) for note in notes if note.severity == "warning"]
+    assert len(warned) == bool(told)
+    assert told in "".join(warned)
+
+
 CSV_ERRORS = {
     "": "no header; a list of participants has the columns seed",
     "seed\n": "no participants",

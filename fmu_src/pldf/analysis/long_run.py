@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import inf
 from pathlib import Path
 from typing import Final
 
@@ -75,7 +76,7 @@ def _rows(variant: str, drives: Sequence[DriveRow]) -> Iterator[dict[str, Cell]]
 def _intervals(drives: Sequence[DriveRow]) -> dict[str, MeanInterval]:
     """Return each measure of one drive of all drivers, with its 95 % confidence interval."""
     found = {
-        name: _mean([factor * getattr(drive, value) for drive in drives])
+        name: _mean([factor * getattr(drive, value) for drive in drives], _most(name))
         for name, (value, factor) in _MEANS.items()
     }
     return {**found, _CONTENT: _share([drive.combined_rate == 0.0 for drive in drives])}
@@ -88,20 +89,23 @@ def _share(true: Sequence[bool]) -> MeanInterval:
     return MeanInterval(100.0 * share, 100.0 * float(ends.low), 100.0 * float(ends.high))
 
 
-def _mean(values: Sequence[float]) -> MeanInterval:
-    """Return a mean with its interval; nothing measured here is below 0."""
+def _most(name: str) -> float:
+    """Return what a measure is at most."""
+    return 100.0 if name.endswith("_percent") else inf
+
+
+def _mean(values: Sequence[float], most: float) -> MeanInterval:
+    """Return a mean with its interval, within 0 and ``most``; one value says nothing of others."""
     if len(values) == 1:
-        return MeanInterval(values[0], values[0], values[0])
+        return MeanInterval(values[0], 0.0, most)
     interval = mean_interval(values)
-    return MeanInterval(interval.value, max(interval.low, 0.0), interval.high)
+    return MeanInterval(interval.value, max(interval.low, 0.0), min(interval.high, most))
 
 
-def long_run_in(folder: Path) -> dict[str, Columns]:
-    """Return the long run that belongs to the study in ``folder``; empty if there is none."""
-    for place in _PLACES:
-        if (path := folder / place / LONG_RUN_CSV).exists():
-            return read_long_run(path)
-    return {}
+def long_run_of(folder: Path) -> Path | None:
+    """Return the table of the long run that belongs to the study in ``folder``, if there is one."""
+    paths = (folder / place / LONG_RUN_CSV for place in _PLACES)
+    return next((path for path in paths if path.exists()), None)
 
 
 def read_long_run(path: Path) -> dict[str, Columns]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..analysis.analysis import Analysis
 from ..analysis.checks import UNCHECKED, Checks
-from ..analysis.long_run import Columns, long_run_in
+from ..analysis.long_run import Columns, long_run_of, read_long_run
 from ..analysis.study_folder import StudyFolder
 from ..errors import ModelError
 from ..files.tables import read_table
@@ -30,7 +30,7 @@ from ..route_facts import RouteFacts, route_facts
 from ..study.own_files import STUDY, VERSIONS
 from ..study.participants_file import PARTICIPANTS
 from ..study.study_file import read_study
-from .own_versions import read_parameters, read_text
+from .own_versions import driven_otherwise, read_parameters, read_text
 
 _SAME_LIMIT_MPS: Final = 0.1
 _SAME_LIMIT_SHARE: Final = 0.95
@@ -122,12 +122,16 @@ def collect(
     shown = _choose(analysis, study, driver)
     if shown is None and study.route is None and not study.study_file:
         analysis = replace(analysis, notes=(*analysis.notes, _road_assumed(study)))
+    long_run = long_run_of(folder)
+    if long_run is not None:
+        told = driven_otherwise(folder, long_run.parent)
+        analysis = replace(analysis, notes=(*analysis.notes, *told))
     return Contents(
         analysis=analysis,
         title=_title(study),
         route=_facts(route, function),
         driver=None if shown is None else _driver(shown, study, route, function),
-        long_run=long_run_in(folder),
+        long_run={} if long_run is None else read_long_run(long_run),
         texts=texts,
         parameters=parameters,
         participants=_parameter_ranges(folder / "participants.csv"),

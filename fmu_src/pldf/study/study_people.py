@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
+from typing import Final
 
 from ..errors import ModelError
 from ..findings import Finding
@@ -15,13 +17,21 @@ from .study_parameters import SETTABLE, parameters_of
 from .study_tables import StudyTables
 from .typical import typical
 
+# What differs from day to day in a person's wish.
+_OCCASION: Final = ("wish_offset_occasion_sd_mps", "wish_lateral_occasion_sigma")
+
 
 def people_of(file: TomlFile, tables: StudyTables, notes: list[Finding]) -> tuple[Participant, ...]:
     """Return those of a file, the one driver who is described, or people who are drawn."""
     table, given = tables.participants, file.table.get("participants", {})
     if table.file:
         _refuse(file, ("count", "seed", "first"), ("driver", "distribution"), "participants.file")
-        return read_participants(file.path.parent / table.file, notes)
+        path = file.path.parent / table.file
+        people = read_participants(path, notes)
+        notes += _shared_days(
+            str(path), people, len(tables.drives.phases) * tables.drives.per_phase
+        )
+        return people
     if tables.driver is not None:
         _refuse(file, (), ("distribution",), "a driver who is described")
         if given.get("count", 1) != 1:
@@ -30,6 +40,26 @@ def people_of(file: TomlFile, tables: StudyTables, notes: list[Finding]) -> tupl
         fields = {SETTABLE["driver"][name].field: float(value) for name, value in values.items()}
         return (Participant(f"P{table.first:03d}", table.seed, fields),)
     return tuple(sample_participants(table.count, table.seed, _distribution(file), table.first))
+
+
+def _shared_days(path: str, people: Sequence[Participant], drives: int) -> list[Finding]:
+    """Return what is to be said of people whose seeds are so near that they share occasions."""
+    varying = [one for one in people if any(one.value(part) > 0.0 for part in _OCCASION)]
+    by_seed = sorted(varying, key=lambda one: one.seed)
+    near = [(a, b) for a, b in pairwise(by_seed) if 0 < b.seed - a.seed < drives]
+    if not near:
+        return []
+    (a, b), others = near[0], len(near) - 1
+    more = f", as do {others} others" if others else ""
+    return [
+        Finding(
+            "warning", path, 0, f"{a.id} and {b.id}",
+            f"seeds {a.seed} and {b.seed} are less than {drives} drives apart{more}",
+            "each drive takes the next seed, so what is of one day in their wishes is the same in "
+            "some drives, and means over people are less certain than they look",
+            f"write seeds that are at least {drives} apart, or draw the people with count and seed",
+        )
+    ]  # fmt: skip
 
 
 def recorded_of(
