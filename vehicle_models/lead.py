@@ -25,8 +25,8 @@ from .traffic_kernel import RoadArrays, prepare_road
 
 TROUBLE_TEXT: Final = {
     NO_TROUBLE: "our car's position and speed are known, and it touches no car ahead",
-    INVALID_INPUT: "position or speed is not a finite number: our car counts as driving on as it "
-    "did",
+    INVALID_INPUT: "position or speed is not a finite, plausible number: our car counts as driving "
+    "on as it did",
     CONTACT: "our car has run into the car ahead",
 }
 

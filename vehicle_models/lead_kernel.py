@@ -25,7 +25,9 @@ from .lead_state import (
 )
 from .traffic_kernel import RoadArrays, drive_traffic, first_car
 
-LARGEST = 1e300
+# Beyond these no car is.
+POSITION_BOUND = 1e8
+SPEED_BOUND = 1e3
 # A car that ours is farther ahead of than this has been driven through.
 PASSED_M = -5.0
 # How many of the one car's events have happened.
@@ -67,7 +69,7 @@ def lead_step(st: LeadState, road: RoadArrays, script: LeadScriptArrays, step_s:
 
 def _read_ego(st: LeadState) -> None:
     """Take our car's position over; without a usable one it drives on as it did."""
-    if abs(st.vehicle_s_m) < LARGEST and abs(st.vehicle_speed_mps) < LARGEST:
+    if abs(st.vehicle_s_m) < POSITION_BOUND and abs(st.vehicle_speed_mps) < SPEED_BOUND:
         st.ego_m = st.vehicle_s_m
         st.ego_mps = st.vehicle_speed_mps
         st.trouble = NO_TROUBLE

@@ -243,8 +243,8 @@ def test_a_contact_is_told_once_and_a_car_driven_through_is_gone() -> None:
     assert "run into the car ahead" in told[0]
 
 
-@pytest.mark.parametrize("nonsense", [float("nan"), float("inf")])
-def test_a_position_that_is_no_number_is_bridged_and_told(nonsense: float) -> None:
+@pytest.mark.parametrize("nonsense", [float("nan"), float("inf"), -1e9, 1e9])
+def test_a_position_that_is_no_place_is_bridged_and_told(nonsense: float) -> None:
     model = lead(ONE_CAR, scene_gap_m=50.0, scene_speed_mps=10.0)
     watched(model, 1.0, ego_mps=10.0)
     model.record.vehicle_s_m = nonsense
@@ -252,6 +252,7 @@ def test_a_position_that_is_no_number_is_bridged_and_told(nonsense: float) -> No
         model.step(0.01)
     assert model.record.lead_gap_m == pytest.approx(50.0, abs=0.15)
     assert [message.level for message in model.messages] == ["warning"]
+    lead(ONE_CAR).restore(model.snapshot())  # within the ranges of a state
 
 
 def test_a_saved_state_goes_on_to_the_bit() -> None:
