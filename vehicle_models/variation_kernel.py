@@ -12,15 +12,12 @@ from pldf.kernel.arrays import Floats
 from .driver_state import DriverState
 from .normal import exponential, normal_quantile
 
-# What a draw is for.
+# What a draw is for: what lasts, everywhere and at a place. The occasion's is so much behind.
 OFFSET_OF_PERSON = 1
 OFFSET_OF_PLACE = 2
-OFFSET_OF_DRIVE = 3
-OFFSET_OF_PLACE_IN_DRIVE = 4
 LATERAL_OF_PERSON = 5
 LATERAL_OF_PLACE = 6
-LATERAL_OF_DRIVE = 7
-LATERAL_OF_PLACE_IN_DRIVE = 8
+OF_OCCASION = 2
 # The occasion's variance is shared by halves between the drive and each place in it.
 HALF_OF_VARIANCE = 0.7071067811865476
 # What varies stays within what its parameter allows.
@@ -34,24 +31,15 @@ _32_BITS = 0xFFFFFFFF
 
 def fill_offsets(st: DriverState, limit: Floats, offset: Floats) -> None:
     """Fill ``offset`` (m/s, per cell) with the wished offset; a place is a limit's segment."""
-    everywhere = st.wish_offset_mps + _spread(
-        st.wish_offset_person_sd_mps, st.person_seed, OFFSET_OF_PERSON, 0
-    )
-    everywhere += _spread(
-        HALF_OF_VARIANCE * st.wish_offset_occasion_sd_mps, st.seed, OFFSET_OF_DRIVE, 0
-    )
+    person, place = st.wish_offset_person_sd_mps, st.wish_offset_place_sd_mps
+    occasion = st.wish_offset_occasion_sd_mps
+    everywhere = _with_parts(st.wish_offset_mps, st, person, occasion, OFFSET_OF_PERSON, 0)
     here = everywhere
     for i in range(len(limit)):
         if i == 0 or limit[i] != limit[i - 1]:
-            here = everywhere + _offset_of_place(st, i)
+            here = everywhere + _with_parts(0.0, st, place, occasion, OFFSET_OF_PLACE, i)
             here = max(OFFSET_MIN_MPS, min(here, OFFSET_MAX_MPS))
         offset[i] = here
-
-
-def _offset_of_place(st: DriverState, begin: int) -> float:
-    occasion = HALF_OF_VARIANCE * st.wish_offset_occasion_sd_mps
-    lasting = _spread(st.wish_offset_place_sd_mps, st.person_seed, OFFSET_OF_PLACE, begin)
-    return lasting + _spread(occasion, st.seed, OFFSET_OF_PLACE_IN_DRIVE, begin)
 
 
 def fill_lateral_accels(st: DriverState, curvature: Floats, lateral: Floats) -> None:
@@ -59,25 +47,27 @@ def fill_lateral_accels(st: DriverState, curvature: Floats, lateral: Floats) -> 
 
     A curve goes on while the road does not count as straight; ``curvature`` is that of each cell.
     """
-    everywhere = _spread(st.wish_lateral_person_sigma, st.person_seed, LATERAL_OF_PERSON, 0)
-    everywhere += _spread(
-        HALF_OF_VARIANCE * st.wish_lateral_occasion_sigma, st.seed, LATERAL_OF_DRIVE, 0
-    )
+    person, place = st.wish_lateral_person_sigma, st.wish_lateral_place_sigma
+    occasion = st.wish_lateral_occasion_sigma
+    everywhere = _with_parts(0.0, st, person, occasion, LATERAL_OF_PERSON, 0)
     straight = _accepted(st, everywhere)
     here = straight
     was_curve = False
     for i in range(len(curvature)):
         is_curve = abs(curvature[i]) > st.driver_lever_curvature_per_m
         if is_curve and not was_curve:
-            here = _accepted(st, everywhere + _lateral_of_place(st, i))
+            of_place = _with_parts(0.0, st, place, occasion, LATERAL_OF_PLACE, i)
+            here = _accepted(st, everywhere + of_place)
         lateral[i] = here if is_curve else straight
         was_curve = is_curve
 
 
-def _lateral_of_place(st: DriverState, begin: int) -> float:
-    occasion = HALF_OF_VARIANCE * st.wish_lateral_occasion_sigma
-    lasting = _spread(st.wish_lateral_place_sigma, st.person_seed, LATERAL_OF_PLACE, begin)
-    return lasting + _spread(occasion, st.seed, LATERAL_OF_PLACE_IN_DRIVE, begin)
+def _with_parts(
+    usual: float, st: DriverState, lasting_sd: float, occasion_sd: float, purpose: int, metre: int
+) -> float:
+    """Add to ``usual`` what lasts, from the person's seed, and half the occasion's variance."""
+    lasting = usual + _spread(lasting_sd, st.person_seed, purpose, metre)
+    return lasting + _spread(HALF_OF_VARIANCE * occasion_sd, st.seed, purpose + OF_OCCASION, metre)
 
 
 def _accepted(st: DriverState, logarithm: float) -> float:

@@ -12,7 +12,8 @@ from scipy import special, stats
 
 from vehicle_models.normal import exponential, natural_log, normal_quantile
 from vehicle_models.variation_kernel import (
-    LATERAL_OF_PLACE_IN_DRIVE,
+    LATERAL_OF_PLACE,
+    OF_OCCASION,
     OFFSET_OF_PERSON,
     keyed_uniform,
 )
@@ -20,7 +21,7 @@ from vehicle_models.variation_kernel import (
 Table = NDArray[np.float64]
 
 SEED_MAX: Final = 999_999_999
-PURPOSES: Final = range(OFFSET_OF_PERSON, LATERAL_OF_PLACE_IN_DRIVE + 1)
+PURPOSES: Final = range(OFFSET_OF_PERSON, LATERAL_OF_PLACE + OF_OCCASION + 1)
 SEEDS: Final = 3000
 # Standard errors that the largest of some thousand independent numbers does not reach.
 FAR: Final = 5.0
