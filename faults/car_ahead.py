@@ -12,18 +12,18 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pldf.compiled import Namespace, compile_modules, kernel, pack
+from pldf.compiled import Namespace, compile_modules, pack
 from pldf.instance import zeros
 from pldf.kernel.arrays import FloatArray, ProfileArrays, RouteArrays, TraceArrays, Work
 from pldf.kernel.codes import ACTIVE, STANDBY
 from pldf.kernel.state import PldfState
 from pldf.roads import Route, route_arrays
+from pldf.study.simulation import car_code
 
 from faults import watched_drive, watched_follow
 from faults.experiment import Counts, Experiment, Progress
 from faults.hard_roads import hard_road
 from faults.watched_follow import Cars, Watched
-from vehicle_models import vehicle_kernel
 from vehicle_models.vehicle_state import VehicleState
 
 KMH: Final = 1.0 / 3.6
@@ -51,8 +51,7 @@ class Road(NamedTuple):
 @cache
 def machine_code() -> Namespace:
     """Return the compiled functions of the function, the vehicle, the drive and the judge."""
-    vehicle = compile_modules((vehicle_kernel,), kernel(), inline=True)
-    called = {**kernel(), **vehicle}
+    called = car_code()
     return {**called, **compile_modules((watched_drive, watched_follow), called, inline=True)}
 
 

@@ -11,19 +11,19 @@ from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pldf.compiled import Namespace, compile_modules, kernel, pack
+from pldf.compiled import Namespace, compile_modules, pack
 from pldf.instance import zeros
 from pldf.kernel.arrays import FloatArray, NextArrays, ProfileArrays, RouteArrays, TraceArrays, Work
 from pldf.kernel.codes import LEARN_FAITHFUL
 from pldf.kernel.state import PldfState
 from pldf.roads import Route, route_arrays
+from pldf.study.simulation import car_code
 
 from faults import watched_drive
 from faults.bad_lessons import bad_lesson, forged_profile
 from faults.experiment import Counts, Experiment, Progress
 from faults.hard_roads import hard_road
 from faults.watched_drive import Lesson, Seen
-from vehicle_models import vehicle_kernel
 from vehicle_models.vehicle_state import VehicleState
 
 ROADS: Final = 20
@@ -55,8 +55,7 @@ class Road(NamedTuple):
 @cache
 def machine_code() -> Namespace:
     """Return the compiled functions of the function, the vehicle and the drive."""
-    vehicle = compile_modules((vehicle_kernel,), kernel(), inline=True)
-    called = {**kernel(), **vehicle}
+    called = car_code()
     return {**called, **compile_modules((watched_drive,), called, inline=True)}
 
 

@@ -27,6 +27,7 @@ from pldf.files.tables import write_table
 from pldf.kernel.codes import LEARN, LEARN_CONSISTENT, LEARN_FAITHFUL
 from pldf.kernel.units import MPS_PER_KMH
 from pldf.profiles.store import Iteration, StoredProfile
+from pldf.recordings.interventions import Rates
 from pldf.report import palette, paper
 from pldf.report.scene import Axis, Line, Panel, Scene, Stroke
 from pldf.roads import open_road
@@ -65,7 +66,7 @@ class Run:
         known: places that a lesson or a pending demonstration reaches, stretched as it is.
     """
 
-    rates: list[tuple[float, float, float]] = field(default_factory=list)
+    rates: list[Rates] = field(default_factory=list)
     accident: list[NDArray[np.int64]] = field(default_factory=list)
     wrong: list[NDArray[np.bool_]] = field(default_factory=list)
     wished: list[NDArray[np.bool_]] = field(default_factory=list)
@@ -178,8 +179,7 @@ def drive_all(simulation: Slipping, person: Participant, drives: int, share: flo
     driver = simulation.person(person)
     for number in range(drives):
         result = simulation.drive_once(driver, PHASES["B1"], number, stored)
-        row = result.row
-        simulation.run.rates.append((row.pedal_rate, row.set_speed_rate, row.combined_rate))
+        simulation.run.rates.append(result.row.rates)
         assert result.iteration is not None  # B1 is learned from
         stored = stored.with_iteration(result.iteration)
     return simulation.run

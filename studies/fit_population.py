@@ -32,7 +32,7 @@ from pldf.study.population import (
     Lognormal,
     sample_participants,
 )
-from pldf.study.runner import in_processes
+from pldf.study.runner import in_processes, rows_in_order
 from pldf.study.unit import Job
 from scipy.optimize import least_squares
 
@@ -103,13 +103,9 @@ class Fit:
     def rates(self, factors: FloatArray) -> FloatArray:
         """Return the mean pedal, set-speed and combined rates in percent."""
         people = sample_participants(self.people, SEED, fitted(factors))
-        rates_of = {
-            done.participant: [
-                (row.pedal_rate, row.set_speed_rate, row.combined_rate) for row in done.rows
-            ]
-            for done in in_processes(self.jobs)(self.job, people)
-        }
-        means = 100.0 * np.mean([rates_of[person.id] for person in people], axis=(0, 1))
+        drives = rows_in_order(in_processes(self.jobs)(self.job, people), people)
+        rates = [[row.rates for row in rows] for rows in drives]
+        means: FloatArray = 100.0 * np.mean(rates, axis=(0, 1))
         self.log.append((factors.copy(), means))
         print(
             f"{len(self.log):3d}  factors {_numbers(factors)}  rates {_numbers(means)}", flush=True

@@ -36,7 +36,7 @@ from pldf.roads import open_road
 from pldf.study.participants import Participant, StudySettings
 from pldf.study.phases import PHASES, Phase
 from pldf.study.population import read_distribution, sample_participants
-from pldf.study.runner import in_processes
+from pldf.study.runner import in_processes, rows_in_order
 from pldf.study.unit import Job
 
 SHARES: Final = (0.0, 0.02, 0.05, 0.10)
@@ -82,15 +82,12 @@ def _with_base_function(phase: Phase) -> Phase:
 
 def drive(way: str, share: float, people: Sequence[Participant], jobs: int) -> FloatArray:
     """Return rates[person, system, measure] in percent, means of the drives with interventions."""
-    rates_of = {}
-    for done in in_processes(jobs)(Job(settings_of(way, share)), list(people)):
-        row = {drive.phase: drive for drive in done.rows}
-        rates_of[done.participant] = [
-            [np.mean([getattr(row[name], f"{measure}_rate") for name in names])
-             for measure in MEASURES]
-            for names in SYSTEMS.values()
-        ]  # fmt: skip
-    return 100.0 * np.array([rates_of[person.id] for person in people])
+    results = in_processes(jobs)(Job(settings_of(way, share)), list(people))
+    rates = []
+    for rows in rows_in_order(results, people):
+        by_phase = {row.phase: row.rates for row in rows}
+        rates.append([np.mean([by_phase[n] for n in names], axis=0) for names in SYSTEMS.values()])
+    return 100.0 * np.array(rates)
 
 
 def effects(way: str, share: float, rates: FloatArray) -> Iterator[Effect]:

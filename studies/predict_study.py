@@ -19,7 +19,7 @@ import argparse
 import os
 import sys
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
 from pathlib import Path
@@ -39,8 +39,8 @@ from pldf.study.own_files import DRIVES
 from pldf.study.participants import Participant, StudySettings
 from pldf.study.phases import PHASES
 from pldf.study.population import Distribution, read_distribution, sample_participants
-from pldf.study.runner import in_processes
-from pldf.study.unit import Job
+from pldf.study.runner import in_processes, rows_in_order
+from pldf.study.unit import Job, ParticipantResult
 
 Table = Mapping[str, Any]
 # Name, the paper's value, form and which of a comparison.
@@ -82,12 +82,16 @@ def drive_studies(distribution: Distribution, studies: int, jobs: int) -> list[D
     """Return all drives of all studies, person by person."""
     settings = StudySettings(road=open_road("study"), phases=tuple(PHASES.values()))
     people = [person for seed in range(studies) for person in study_people(seed, distribution)]
-    rows_of: dict[str, Sequence[DriveRow]] = {}
-    for count, done in enumerate(in_processes(jobs)(Job(settings), people), 1):
-        rows_of[done.participant] = done.rows
+    results = _counted(in_processes(jobs)(Job(settings), people), len(people))
+    return [row for rows in rows_in_order(results, people) for row in rows]
+
+
+def _counted(results: Iterable[ParticipantResult], people: int) -> Iterator[ParticipantResult]:
+    """Pass results on and say how many there are."""
+    for count, result in enumerate(results, 1):
         if count % DRIVERS == 0:
-            print(f"  {count} of {len(people)} drivers", file=sys.stderr)
-    return [row for person in people for row in rows_of[person.id]]
+            print(f"  {count} of {people} drivers", file=sys.stderr)
+        yield result
 
 
 def study_people(seed: int, distribution: Distribution) -> list[Participant]:
@@ -100,10 +104,9 @@ def rates_of(rows: Sequence[DriveRow]) -> FloatArray:
     """Return rates[study, person, drive, measure] in percent; the drives are ``DRIVEN``."""
     by_drive = {(row.participant, row.phase): row for row in rows}
     rates = [
-        getattr(by_drive[who, phase], f"{measure}_rate")
+        by_drive[who, phase].rates
         for who in dict.fromkeys(row.participant for row in rows)
         for phase in DRIVEN
-        for measure in MEASURES
     ]
     return 100.0 * np.array(rates).reshape(-1, DRIVERS, len(DRIVEN), len(MEASURES))
 

@@ -42,7 +42,7 @@ def draw_one_driver(study: Study, out: Path) -> list[Path]:
             _headline(rows, phases.values()),
         ),
         "rates.png": figures.rate_bars(
-            {row.phase: _rates(row) for row in rows},
+            {row.phase: row.rates for row in rows},
             "Share of each drive with an intervention",
         ),
     }
@@ -79,7 +79,7 @@ def table_of(study: Study, out: Path) -> Table:
             "yes" if phase.learn else "no",
             minutes(row.duration_s),
             f"{row.interventions:.0f}",
-            *_percent(_rates(row)),
+            *_percent(row.rates),
             end_section=following is None or following.system != row.system,
         )
     for system, published in PUBLISHED.items():
@@ -100,10 +100,6 @@ def _profile(study: Study, out: Path) -> StoredProfile | None:
     return store.load(study.participants[0].number, fingerprint(route), route.nodes)
 
 
-def _rates(row: DriveRow) -> Rates:
-    return Rates(row.pedal_rate, row.set_speed_rate, row.combined_rate)
-
-
 def _acting(rows: Sequence[DriveRow], phases: Iterable[Phase], system: str) -> list[DriveRow]:
     """Return the drives with one system in which the driver intervenes."""
     names = [phase.name for phase in phases if phase.intervenes]
@@ -111,7 +107,7 @@ def _acting(rows: Sequence[DriveRow], phases: Iterable[Phase], system: str) -> l
 
 
 def _mean(rows: Sequence[DriveRow]) -> Rates:
-    columns = zip(*map(_rates, rows), strict=True)
+    columns = zip(*(row.rates for row in rows), strict=True)
     return Rates(*(float(np.mean(column)) for column in columns))
 
 
@@ -130,7 +126,7 @@ def _headline(rows: Sequence[DriveRow], phases: Iterable[Phase]) -> str:
 def _panel_title(row: DriveRow, phase: Phase) -> str:
     if not phase.intervenes:
         return phase.about
-    pedal, set_speed, combined = (f"{100 * rate:.0f} %" for rate in _rates(row))
+    pedal, set_speed, combined = (f"{100 * rate:.0f} %" for rate in row.rates)
     return f"{phase.about}: pedal {pedal}, set speed {set_speed}, either {combined} of the time"
 
 

@@ -7,6 +7,7 @@ from math import nan
 from typing import Final
 
 from ..files.tables import Column, Format
+from ..recordings.interventions import Rates
 
 PHASE: Final = Column(
     "phase",
@@ -71,6 +72,11 @@ class DriveRow:
     def system(self) -> str:
         """A (base function) or B (learned profile)."""
         return self.phase[0]
+
+    @property
+    def rates(self) -> Rates:
+        """The three rates."""
+        return Rates(self.pedal_rate, self.set_speed_rate, self.combined_rate)
 
     @property
     def cells(self) -> tuple[str | float, ...]:

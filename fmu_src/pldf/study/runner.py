@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import multiprocessing
 import sys
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import closing
 from importlib import import_module
 from multiprocessing import forkserver
 from typing import Any, Final
 
 from ..errors import ModelError
+from .drive_row import DriveRow
 from .participants import Participant
 from .pool import drive_in_pool, killed_units
 from .results import StudyResults
@@ -64,6 +65,14 @@ def in_processes(jobs: int, watch: Watch = lambda _: None) -> Run:
         return _in_pool(job, participants, count)
 
     return run
+
+
+def rows_in_order(
+    results: Iterable[ParticipantResult], participants: Sequence[Participant]
+) -> list[tuple[DriveRow, ...]]:
+    """Return the drives of each of ``participants``, in whatever order ``results`` come."""
+    rows = {result.participant: result.rows for result in results}
+    return [rows[person.id] for person in participants]
 
 
 def prepare_processes() -> None:

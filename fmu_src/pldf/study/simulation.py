@@ -74,11 +74,15 @@ def prepared(settings: StudySettings) -> Simulation:
 
 
 @cache
+def car_code() -> Namespace:
+    """Return the compiled functions of the driving function's kernel and the vehicle's by name."""
+    return {**kernel(), **compile_modules((vehicle_kernel,), kernel(), inline=True)}
+
+
+@cache
 def machine_code() -> Namespace:
-    """Return the compiled functions of kernel, driver and loop by name."""
-    vehicle = compile_modules((vehicle_kernel,), kernel(), inline=True)
-    driver = compile_modules(DRIVER_KERNELS, kernel(), inline=True)
-    called = {**kernel(), **vehicle, **driver}
+    """Return the compiled functions of kernel, vehicle, driver and loop by name."""
+    called = {**car_code(), **compile_modules(DRIVER_KERNELS, kernel(), inline=True)}
     return {**called, **compile_modules((loop,), called, inline=True)}
 
 
