@@ -20,6 +20,7 @@ PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3.14 python3 p
 endif
 
 READY := .venv/.ready
+NODE_READY := node_modules/.ready
 BUILT := dist/.built
 FMU_SOURCES := $(shell find fmu_src vehicle_models LICENSE -type f \
 	-not -path '*/__pycache__/*' -not -path '*.egg-info/*')
@@ -34,17 +35,18 @@ study: $(BUILT)
 	$(BIN)/pldf study paper --out out/paper --restart
 	$(BIN)/pldf analyse out/paper --report out/paper/report.html
 
-test: $(READY)
+test: $(READY) $(NODE_READY)
 	$(BIN)/python -m pytest -n auto --dist loadfile $(TESTS)
 
-test-all: $(READY)
+test-all: $(READY) $(NODE_READY)
 	$(BIN)/python -m pytest -n auto --dist loadfile -m "nightly or not nightly" $(TESTS)
 
-lint: $(READY)
+lint: $(READY) $(NODE_READY)
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/node node_modules/typescript/bin/tsc --noEmit
 
 format: $(READY)
 	$(BIN)/ruff check --fix
@@ -87,6 +89,11 @@ $(READY): pyproject.toml requirements-dev.txt
 	$(BIN)/python -m pip install --quiet --no-deps --require-hashes \
 		--requirement requirements-dev.txt
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@touch $@
+
+# What checks the cockpit's JavaScript; Node.js itself comes with .venv.
+$(NODE_READY): $(READY) package.json package-lock.json
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/npm ci --silent --no-audit --no-fund
 	@touch $@
 
 # The newest packages that pyproject.toml allows, for every system and Python at once.

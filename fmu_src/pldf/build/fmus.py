@@ -49,6 +49,7 @@ PLDF: Final = Package(
         "build_version.py",
         "cache.py",
         "cli.py",
+        "cockpit",
         "commands",
         "compiled.py",
         "cosim",
