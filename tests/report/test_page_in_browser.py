@@ -3,41 +3,24 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import shutil
 import time
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from chrome import asked, chrome, console, wait
 from selenium import webdriver
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.actions.action_builder import ActionBuilder
 from selenium.webdriver.common.by import By
 
-REQUEST = "Network.requestWillBeSent"
 FIGURES = ("rates", "compared", "drives", "development", "steps", "long_run", "plan", "base")
-BROWSER_FLAGS = (
-    "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-component-update",
-    "--disable-background-networking", "--disable-sync", "--disable-dev-shm-usage",
-    "--window-size=1200,1000",
-)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
-    driver = shutil.which("chromedriver")
-    if driver is None:
-        assert not os.environ.get("CI"), "CI tests the report in a browser: install chromedriver"
-        pytest.skip("no chromedriver: apt-get install chromium-driver")
-    options = webdriver.ChromeOptions()
-    for flag in (*BROWSER_FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('profile')}"):
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    window = webdriver.Chrome(options=options, service=Service(driver))
-    yield window
-    window.quit()
+    with chrome(tmp_path_factory.mktemp("profile")) as window:
+        yield window
 
 
 @pytest.fixture(scope="module")
@@ -49,22 +32,10 @@ def page(browser: webdriver.Chrome, html: str, tmp_path_factory: pytest.TempPath
     return browser
 
 
-def wait(window: webdriver.Chrome, condition: str) -> None:
-    end = time.monotonic() + 30.0
-    while not window.execute_script(f"return {condition}"):
-        assert time.monotonic() < end, condition
-        time.sleep(0.05)
-
-
 def test_the_page_opens_without_errors_and_without_network(page: webdriver.Chrome) -> None:
-    assert [entry["message"] for entry in page.get_log("browser")] == []
-    asked = [
-        event["params"]["request"]["url"]
-        for entry in page.get_log("performance")
-        if (event := json.loads(entry["message"])["message"])["method"] == REQUEST
-        and event["params"]["documentURL"] == page.current_url
-    ]
-    assert [url for url in asked if not url.startswith(("data:", "blob:"))] == [page.current_url]
+    assert console(page) == []
+    urls = [url for url in asked(page) if not url.startswith(("data:", "blob:"))]
+    assert urls == [page.current_url]
 
 
 def test_every_figure_is_drawn(page: webdriver.Chrome) -> None:
