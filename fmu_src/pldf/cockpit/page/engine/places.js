@@ -1,0 +1,133 @@
+// Where something is learned, as places that a person can name, keep and forget.
+
+import { columnOf, iterationOf } from "./profile.js";
+
+/** @typedef {import("./profile.js").Profile} Profile */
+/** @typedef {import("./profile.js").Iteration} Iteration */
+
+// Smaller deviations are no lesson to the function either (learning.deviation_min_mps).
+const SHOWN_MPS = 1 / 3.6;
+
+/**
+ * A run of metres where one thing is learned.
+ * @typedef {object} Place
+ * @property {"pedal" | "lever"} by
+ * @property {number} from_m
+ * @property {number} to_m last metre of it
+ * @property {number} at_m where it deviates most: there "forget here" means this place
+ * @property {number} change_mps how much at `at_m`, above 0: faster
+ * @property {number} speed_mps learned speed at `at_m`
+ * @property {number} base_mps what it would be at `at_m` without lessons
+ * @property {number[]} iterations numbers of those that shaped it last
+ * @property {number} lessons how many drives shaped it
+ */
+
+/**
+ * Return the places of a profile, by distance.
+ * @param {Profile} profile
+ * @param {Float64Array} limit_mps legal limit per cell: what the lever taught holds for one limit
+ * @param {number} [number] of the iteration; the newest if there is none
+ * @returns {Place[]}
+ */
+export function placesOf(profile, limit_mps, number) {
+  const iteration = iterationOf(profile, number);
+  const places = [...pedalPlaces(iteration), ...leverPlaces(profile, iteration, limit_mps)];
+  return places.sort((a, b) => a.from_m - b.from_m || a.to_m - b.to_m);
+}
+
+/** @param {Iteration} iteration @returns {Place[]} */
+function pedalPlaces(iteration) {
+  const [learned, base] = speeds(iteration);
+  const drive = columnOf(iteration, "drive");
+  const byPedal = columnOf(iteration, "intervention");
+  const change = learned.map((speed, i) => speed - at(base, i));
+  const sign = change.map((mps, i) =>
+    Math.abs(mps) > SHOWN_MPS && at(drive, i) > 0 && at(byPedal, i) > 0 ? Math.sign(mps) : 0,
+  );
+  return runs(sign).map(([from, to]) => ({
+    ...place("pedal", iteration, change, from, to),
+    iterations: distinct(drive, from, to),
+  }));
+}
+
+/**
+ * @param {Profile} profile
+ * @param {Iteration} iteration
+ * @param {Float64Array} limit
+ * @returns {Place[]}
+ */
+function leverPlaces(profile, iteration, limit) {
+  const offset = columnOf(iteration, "offset_mps");
+  const own = offset.map((mps, i) => (mps === 0 ? 0 : 1 + at(limit, i)));
+  return runs(own).map(([from, to]) => ({
+    ...place("lever", iteration, offset, from, to),
+    iterations: [taughtBy(profile, iteration.number, from)],
+  }));
+}
+
+/**
+ * @param {"pedal" | "lever"} by
+ * @param {Iteration} iteration
+ * @param {Float64Array} change_mps
+ * @param {number} from_m
+ * @param {number} to_m
+ */
+function place(by, iteration, change_mps, from_m, to_m) {
+  let most = from_m;
+  for (let i = from_m; i <= to_m; i += 1) {
+    if (Math.abs(at(change_mps, i)) > Math.abs(at(change_mps, most))) most = i;
+  }
+  const [learned, base] = speeds(iteration);
+  const lessons = columnOf(iteration, "lessons").subarray(from_m, to_m + 1);
+  return {
+    by, from_m, to_m, at_m: most, change_mps: at(change_mps, most),
+    speed_mps: at(learned, most), base_mps: at(base, most), lessons: lessons.reduce((a, b) => Math.max(a, b), 0),
+  };
+}
+
+/**
+ * Return the iteration since which an offset has been what it is.
+ * @param {Profile} profile
+ * @param {number} number of the iteration that is looked at
+ * @param {number} cell
+ */
+function taughtBy(profile, number, cell) {
+  const value = at(columnOf(iterationOf(profile, number), "offset_mps"), cell);
+  let since = number;
+  while (since > 1 && at(columnOf(iterationOf(profile, since - 1), "offset_mps"), cell) === value) {
+    since -= 1;
+  }
+  return since;
+}
+
+/** @param {Iteration} iteration @returns {[Float64Array, Float64Array]} learned and base */
+function speeds(iteration) {
+  return [columnOf(iteration, "learned_mps"), columnOf(iteration, "base_mps")];
+}
+
+/** @param {Float64Array} values @param {number} from @param {number} to @returns {number[]} */
+function distinct(values, from, to) {
+  return [...new Set(values.subarray(from, to + 1))].sort((a, b) => a - b);
+}
+
+/**
+ * Return first and last index of each run of one value other than 0.
+ * @param {ArrayLike<number>} values
+ * @returns {[number, number][]}
+ */
+export function runs(values) {
+  /** @type {[number, number][]} */
+  const found = [];
+  for (let i = 0; i < values.length; i += 1) {
+    const last = found.at(-1);
+    if (values[i] === 0) continue;
+    if (last !== undefined && last[1] === i - 1 && values[i - 1] === values[i]) last[1] = i;
+    else found.push([i, i]);
+  }
+  return found;
+}
+
+/** @param {ArrayLike<number>} values @param {number} i @returns {number} NaN beyond the ends */
+function at(values, i) {
+  return values[i] ?? NaN;
+}
