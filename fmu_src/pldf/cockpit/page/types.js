@@ -40,7 +40,10 @@
  * @property {"RHT" | "LHT"} traffic side
  * @property {Stretch[]} stretches
  */
-/** @typedef {{kind: "village" | "bridge", from_m: number, to_m: number, name: string}} Stretch */
+/**
+ * Where there is a village or a bridge; of a road without a line, to which side it turns.
+ * @typedef {{kind: "village" | "bridge" | "bend_left" | "bend_right", from_m: number, to_m: number, name: string}} Stretch
+ */
 
 /**
  * One drive of the plan: values of parameters and start values by part and name.

@@ -33,7 +33,14 @@ _CUT: Final = frozenset(
 _NAME_MAX: Final = 40  # characters of a tag that an error shows
 
 
-def parse_xml(blocks: Iterable[bytes], root: str, path: Path, notes: list[Finding]) -> Element:
+def parse_xml(
+    blocks: Iterable[bytes],
+    root: str,
+    path: Path,
+    notes: list[Finding],
+    *,
+    objects: bool = False,
+) -> Element:
     """Return the root element, which must be called ``root``.
 
     A byte order mark, comments or any other text before the XML declaration is skipped. Elements
@@ -44,12 +51,13 @@ def parse_xml(blocks: Iterable[bytes], root: str, path: Path, notes: list[Findin
         root: name of the element that holds all others.
         path: of the file.
         notes: a declaration that is not true is added to them.
+        objects: what stands beside the roads is kept, too.
 
     Raises:
         ModelError: with file and line.
     """
     text = xml_text(iter(blocks), root, path, notes)
-    builder = _Builder(text.skipped_lines, path)
+    builder = _Builder(text.skipped_lines, path, _SKIPPED - {"objects"} if objects else _SKIPPED)
     parser = builder.parser
     try:
         for block in text.blocks:
@@ -70,7 +78,7 @@ def parse_xml(blocks: Iterable[bytes], root: str, path: Path, notes: list[Findin
 class _Builder:
     """Makes the tree; a ``planView`` and what is skipped have handlers of their own."""
 
-    def __init__(self, skipped_lines: int, path: Path) -> None:
+    def __init__(self, skipped_lines: int, path: Path, skipped: frozenset[str]) -> None:
         self.top = Element("", {}, 0)
         self.parser = expat.ParserCreate()
         self._open = [self.top]
@@ -78,6 +86,7 @@ class _Builder:
         self._inside = 0  # elements open in one that is skipped
         self._skipped_lines = skipped_lines
         self._path = path
+        self._skipped = skipped
         self._geometries = self._table.handlers(
             self.parser, skipped_lines, self._check_depth, self._end_plan_view
         )
@@ -95,7 +104,7 @@ class _Builder:
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         self._check_depth()
         tag = tag.rpartition(":")[2]
-        if tag in _SKIPPED:
+        if tag in self._skipped:
             self._handle(self._start_skipped, self._end_skipped)
             return
         if tag == "planView":
