@@ -1,0 +1,72 @@
+// What the person sets for the page: kept in this browser.
+
+import { fromJson, toJson } from "./saved.js";
+
+/**
+ * @typedef {object} Settings
+ * @property {"cockpit" | "chase"} camera
+ * @property {boolean} sound
+ * @property {boolean} mirror
+ * @property {"kmh" | "mph"} unit
+ * @property {"assisted" | "person"} steering
+ * @property {number} fov_deg horizontal field of view
+ * @property {"auto" | "less"} motion auto: as the system is set
+ */
+
+const KEY = "pldf-cockpit settings";
+export const FOV_DEG = { low: 40, high: 120 };
+
+/**
+ * Return the settings kept in this browser, and the plan's where there are none.
+ * @param {{steering: Settings["steering"], fov_deg: number}} plan
+ * @returns {Settings}
+ */
+export function readSettings(plan) {
+  /** @type {Settings} */
+  const first = {
+    camera: "cockpit",
+    sound: true,
+    mirror: true,
+    unit: "kmh",
+    steering: plan.steering,
+    fov_deg: plan.fov_deg,
+    motion: "auto",
+  };
+  return checked({ ...first, ...fromJson(KEY) }, first);
+}
+
+/**
+ * Return `settings` with what cannot be replaced by what it was `first`.
+ * @param {Settings} settings
+ * @param {Settings} first
+ * @returns {Settings}
+ */
+export function checked(settings, first) {
+  const choices = {
+    camera: ["cockpit", "chase"],
+    sound: [true, false],
+    mirror: [true, false],
+    unit: ["kmh", "mph"],
+    steering: ["assisted", "person"],
+    motion: ["auto", "less"],
+  };
+  const known = Object.entries(choices).map(([key, values]) => {
+    const name = /** @type {keyof typeof choices} */ (key);
+    return [name, values.some((one) => one === settings[name]) ? settings[name] : first[name]];
+  });
+  const fits = settings.fov_deg >= FOV_DEG.low && settings.fov_deg <= FOV_DEG.high;
+  return { ...Object.fromEntries(known), fov_deg: fits ? settings.fov_deg : first.fov_deg };
+}
+
+/** @param {Settings} settings */
+export function saveSettings(settings) {
+  toJson(KEY, settings);
+}
+
+/**
+ * @param {Settings} settings
+ * @returns {boolean} whether moving pictures are to be few
+ */
+export function reducedMotion(settings) {
+  return settings.motion === "less" || matchMedia("(prefers-reduced-motion: reduce)").matches;
+}
