@@ -1,6 +1,7 @@
 // What both formats of a profile file are made of: lines of text, blocks of float64, a checksum.
 // It reads what `pldf.profiles.file_parts` reads, and refuses what that refuses.
 
+import { crc32 } from "./crc32.js";
 import { refuse } from "./profile_refused.js";
 
 const ALIGNMENT = 64;
@@ -148,19 +149,4 @@ export function readBlock(data, at, nodes, column) {
 /** @param {Uint8Array} bytes @returns {string} a character per byte */
 function latin(bytes) {
   return String.fromCharCode(...bytes);
-}
-
-const REMAINDERS = Uint32Array.from({ length: 256 }, (_, byte) => {
-  let remainder = byte;
-  for (let bit = 0; bit < 8; bit += 1) {
-    remainder = remainder & 1 ? (remainder >>> 1) ^ 0xedb88320 : remainder >>> 1;
-  }
-  return remainder;
-});
-
-/** @param {Uint8Array} bytes @returns {number} the checksum of zlib, PNG and gzip */
-function crc32(bytes) {
-  let sum = 0xffffffff;
-  for (const byte of bytes) sum = (REMAINDERS[(sum ^ byte) & 255] ?? 0) ^ (sum >>> 8);
-  return (sum ^ 0xffffffff) >>> 0;
 }
