@@ -1,0 +1,107 @@
+"""What goes on in a drive, told to who watches: instrument clusters, the experimenter's page."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from contextlib import suppress
+from http import HTTPStatus
+from typing import Any, Final
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from .storage import Refused
+
+MESSAGE_MAX: Final = 65_536
+KINDS: Final = ("frame", "status", "abort")
+_KEPT: Final = ("frame", "status")  # the last of them is told to who comes later
+_WAITING_MAX: Final = 200
+_CLIENTS_MAX: Final = 50
+_PARTICIPANTS_MAX: Final = 1000
+_TRY_AGAIN_LATER: Final = 1013  # of WebSocket
+_UNUSABLE: Final = 1007
+
+
+class Live:
+    """The windows that are open, and what they were told last."""
+
+    def __init__(self) -> None:
+        self._clients: set[_Client] = set()
+        self._last: dict[tuple[str, str], str] = {}
+
+    def tell(self, text: str, teller: _Client | None = None) -> None:
+        """Tell a message to everybody else.
+
+        Raises:
+            Refused: it is no message as documented.
+        """
+        kind, participant, text = checked(text)
+        if kind in _KEPT:
+            self._last[kind, participant] = text
+            while len(self._last) > _PARTICIPANTS_MAX:
+                del self._last[next(iter(self._last))]
+        for client in self._clients - {teller}:
+            client.tell(kind, text)
+
+    async def serve(self, socket: WebSocket) -> None:
+        """Take and give messages until the window closes."""
+        await socket.accept()
+        if len(self._clients) >= _CLIENTS_MAX:
+            await socket.close(_TRY_AGAIN_LATER, "too many windows are open")
+            return
+        client = _Client()
+        for (kind, _), text in self._last.items():
+            client.tell(kind, text)
+        self._clients.add(client)
+        telling = asyncio.create_task(client.run(socket))
+        try:
+            while True:
+                self.tell(await socket.receive_text(), client)
+        except WebSocketDisconnect:
+            pass
+        except (Refused, KeyError) as problem:  # KeyError: bytes instead of text
+            with suppress(RuntimeError):
+                await socket.close(_UNUSABLE, str(problem)[:100])
+        finally:
+            self._clients.discard(client)
+            telling.cancel()
+
+
+class _Client:
+    """A window with what it has not been told yet."""
+
+    def __init__(self) -> None:
+        self._waiting: asyncio.Queue[str] = asyncio.Queue(_WAITING_MAX)
+
+    def tell(self, kind: str, text: str) -> None:
+        """Tell it when it has time; frames that it has no time for are left out."""
+        if self._waiting.full():
+            if kind == "frame":
+                return
+            self._waiting.get_nowait()
+        self._waiting.put_nowait(text)
+
+    async def run(self, socket: WebSocket) -> None:
+        with suppress(WebSocketDisconnect, RuntimeError):  # closed while something is told
+            while True:
+                await socket.send_text(await self._waiting.get())
+
+
+def checked(text: str) -> tuple[str, str, str]:
+    """Return kind and participant of a message, and its text with its kind.
+
+    Raises:
+        Refused: it is too long, no JSON object, or of no known kind.
+    """
+    if len(text) > MESSAGE_MAX:
+        raise Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"more than {MESSAGE_MAX} bytes")
+    try:
+        message: Any = json.loads(text)
+    except (ValueError, RecursionError):
+        message = None
+    if not isinstance(message, dict):
+        raise Refused(HTTPStatus.BAD_REQUEST, "a message is a JSON object")
+    kind = message.setdefault("kind", "frame")
+    if kind not in KINDS:
+        raise Refused(HTTPStatus.BAD_REQUEST, f"kind must be one of {', '.join(KINDS)}")
+    return kind, str(message.get("participant", "")), json.dumps(message)
