@@ -96,6 +96,11 @@ def unpack(path: Path, folder: Path) -> Fmu:
         fmpy.extract(str(path), unzipdir=str(folder))
     except Exception as error:  # fmpy raises bare Exception for all that is wrong with an archive
         raise _unusable(path, error) from error
+    return described(description, folder)
+
+
+def described(description: Any, folder: Path) -> Fmu:
+    """Return the FMU of fmpy's ``description`` that was unpacked into ``folder``."""
     items = {
         kind.name: Enumeration(kind.name, tuple(item.name for item in kind.items))
         for kind in description.typeDefinitions

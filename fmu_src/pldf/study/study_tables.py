@@ -20,6 +20,8 @@ STEP_MIN_S: Final = 1e-4
 STEP_MAX_S: Final = 0.1
 LIMIT_MAX_MPS: Final = 300.0 / KMH_PER_MPS
 
+PRACTICE_MAX: Final = 9
+
 PhaseName = Literal["A1", "A2", "A3", "B1", "B2", "B3"]
 Text = Annotated[str, Meta(pattern=r"\S", description="a text in quotes")]
 RoadId = Annotated[str | int, Meta(description='the id of a road, such as 12 or "Main Street"')]
@@ -49,6 +51,14 @@ Smoothing = Annotated[float, Meta(ge=0.0, le=1000.0, description="a number from 
 Recorded = Annotated[
     list[str] | Literal["all", "typical"],
     Meta(description='"all", "typical" or a list of participants'),
+]
+Explanation = Literal["none", "icon", "text"]
+Practice = Annotated[
+    int, Meta(ge=0, le=PRACTICE_MAX, description=f"a whole number from 0 to {PRACTICE_MAX}")
+]
+PracticeEnd = Annotated[float, Meta(ge=100.0, description="a number from 100, in m")]
+FieldOfView = Annotated[
+    float, Meta(ge=20.0, le=150.0, description="a number from 20 to 150, in degrees")
 ]
 
 
@@ -92,6 +102,23 @@ class RecordingsTable(Struct, forbid_unknown_fields=True, frozen=True):
     participants: Recorded = []
 
 
+class CockpitTable(Struct, forbid_unknown_fields=True, frozen=True):
+    """``[cockpit]``: the study with people who drive it themselves (``pldf cockpit``)."""
+
+    language: Literal["en", "de"] = "en"
+    welcome: Text = ""
+    consent: Text = ""
+    thanks: Text = ""
+    questionnaires: Text = ""
+    practice: Practice = 1
+    practice_end_m: PracticeEnd = 1000.0
+    explanations: tuple[Explanation, ...] = ("text",)
+    steering: Literal["assisted", "person"] = "assisted"
+    fov_deg: FieldOfView = 60.0
+    breaks: dict[str, Any] = {}
+    ask: dict[str, Any] = {}
+
+
 class StudyTables(Struct, forbid_unknown_fields=True, frozen=True):
     """The whole file; the tables of parameters are read by ``parameter_table``."""
 
@@ -107,6 +134,7 @@ class StudyTables(Struct, forbid_unknown_fields=True, frozen=True):
     distribution: dict[str, Any] = {}
     recordings: RecordingsTable = RecordingsTable()
     variants: dict[str, Any] = {}
+    cockpit: CockpitTable = CockpitTable()
 
 
 def parameter_table(signals: Iterable[Signal]) -> type[Struct]:

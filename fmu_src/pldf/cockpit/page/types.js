@@ -91,7 +91,7 @@
  * @property {string} id
  * @property {Record<Language, string>} title
  * @property {Record<Language, string>} intro
- * @property {string[]} after phases, or "start", "practice", "end"
+ * @property {string[]} after phases, or "start", "practice", "end", or "A", "B": after the last drive with that system
  * @property {Item[]} items
  */
 

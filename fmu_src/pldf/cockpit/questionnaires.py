@@ -1,0 +1,243 @@
+"""Questionnaires from a TOML file, checked as a whole: every problem is told at once.
+
+How such a file is written stands in ``questionnaires.toml``, the packaged one.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+from ..analysis.questionnaires.scales import BOXES, SCALES, asked_by
+from ..errors import ModelError
+from ..study.phases import PHASES
+from ..toml_file import Key, TomlFile, listed, shown
+from .question_tables import MOMENTS, ItemTable, OptionTable, QuestionnaireTable, Words
+
+PACKAGED: Final = Path(__file__).parent / "questionnaires.toml"
+_ID: Final = re.compile(r"[a-z][a-z0-9_]*")
+# Columns of questionnaire.csv that are none of an item.
+_TAKEN: Final = ("participant", "system", "phase", "drive")
+_ITEM_KEYS: Final = ItemTable.__struct_fields__
+_INCLUDE: Final = "include"
+
+T = TypeVar("T")
+
+
+def read_questionnaires(path: Path, ask: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return the questionnaires of a file in the form of the page (``Questionnaire``).
+
+    Args:
+        path: the file.
+        ask: when a questionnaire is asked, by its id, in place of what the file says; of those
+            that come with the package, too, as if the file included them.
+
+    Raises:
+        ModelError: all that is wrong, each with file, line, key and the way out.
+    """
+    file = TomlFile(path)
+    asked_more = [name for name in ask if name not in file.table]
+    reading = _Reading(file)
+    included = [*reading.included(), *asked_more]
+    packaged = {} if path == PACKAGED else _Reading(TomlFile(PACKAGED)).questionnaires()
+    for name in included:
+        if name not in packaged:
+            reading.wrong((_INCLUDE,), f"{shown(name)} must be one of {listed(packaged)}")
+    found = {name: packaged[name] for name in included if name in packaged}
+    found |= reading.questionnaires()
+    for name, after in ask.items():
+        if name in found:
+            found[name] = {**found[name], "after": reading.moments((name,), after)}
+    reading.check(found)
+    reading.finish()
+    return [one for one in found.values() if one["after"]]
+
+
+class _Reading:
+    """One file, and what was found wrong in it."""
+
+    def __init__(self, file: TomlFile) -> None:
+        self._file = file
+        self._problems: list[str] = []
+
+    def finish(self) -> None:
+        """Raise ModelError if something is wrong."""
+        if self._problems:
+            raise ModelError("\n".join(dict.fromkeys(self._problems)))
+
+    def wrong(self, key: Key, problem: str) -> None:
+        """Note that something is wrong with a key."""
+        self._tried(lambda: self._file.fail(key, problem))
+
+    def included(self) -> list[str]:
+        """Return the names of the packaged questionnaires that the file asks for."""
+        names = self._file.table.get(_INCLUDE, [])
+        if isinstance(names, list) and all(isinstance(name, str) for name in names):
+            return names
+        self.wrong((_INCLUDE,), f"{shown(names)} must be a list of names")
+        return []
+
+    def questionnaires(self) -> dict[str, dict[str, Any]]:
+        """Return the file's own questionnaires by id."""
+        made = {}
+        for name, table in self._file.table.items():
+            if name == _INCLUDE:
+                continue
+            if not isinstance(table, dict):
+                self.wrong((name,), f"unknown; write [{name}] for a questionnaire")
+            elif (one := self._questionnaire(name, table)) is not None:
+                made[name] = one
+        return made
+
+    def moments(self, key: Key, after: object) -> list[str]:
+        """Return when something is asked, checked."""
+        known = [*PHASES, *MOMENTS]
+        if not isinstance(after, list | tuple) or any(moment not in known for moment in after):
+            self.wrong(key, f"{shown(after)} must be a list out of {', '.join(map(shown, known))}")
+            return []
+        return list(after)
+
+    def check(self, found: Mapping[str, Mapping[str, Any]]) -> None:
+        """Check what concerns more than one questionnaire: names of items, whole scales."""
+        where: dict[str, str] = {}
+        for name, one in found.items():
+            for item in one["items"]:
+                key = (name, "items", item["id"])
+                if item["id"] in where:
+                    self.wrong(key, f"an item of [{where[item['id']]}], too; choose another name")
+                where[item["id"]] = name
+        self._check_scales(found, where)
+
+    def _check_scales(
+        self, found: Mapping[str, Mapping[str, Any]], where: Mapping[str, str]
+    ) -> None:
+        items = {asked.item: name for name in where if (asked := asked_by(name)) is not None}
+        for scale, members in SCALES.items():
+            there = [where[items[member]] for member in members if member in items]
+            absent = [member for member in members if member not in items]
+            if there and absent:
+                self.wrong(
+                    (there[0],),
+                    f"{', '.join(absent)} is missing of the scale {scale}: it could not be scored; "
+                    "ask all of its items or none",
+                )
+        for name in {where[item] for item in items.values()}:
+            if wrong := [m for m in found[name]["after"] if m in ("start", "practice", "end")]:
+                self.wrong(
+                    (name, "after"),
+                    f"{shown(wrong[0])}: answers on the system belong to drives; write phases, "
+                    '"A" or "B"',
+                )
+
+    def _questionnaire(self, name: str, table: Mapping[str, Any]) -> dict[str, Any] | None:
+        items = self._items(name, table)
+        about = {k: v for k, v in table.items() if k != "items" and k not in _ITEM_KEYS}
+        read = self._tried(lambda: self._read(QuestionnaireTable, about, (name,)))
+        if read is None or not self._named((name,)):
+            return None
+        return {
+            "id": name,
+            "title": _both(read.title),
+            "intro": _both(read.intro),
+            "after": self.moments((name, "after"), read.after),
+            "items": items,
+        }
+
+    def _items(self, name: str, table: Mapping[str, Any]) -> list[dict[str, Any]]:
+        raw = table.get("items")
+        if not isinstance(raw, dict) or not raw:
+            self.wrong((name, "items"), f"no items; write [{name}.items] and a line for each")
+            return []
+        shared = {key: value for key, value in table.items() if key in _ITEM_KEYS}
+        made: list[dict[str, Any]] = []
+        for item, own in raw.items():
+            key = (name, "items", item)
+            if not isinstance(own, dict):
+                self.wrong(key, f'{shown(own)} must be a table, such as {{ text = "..." }}')
+                continue
+            content = {**shared, **own}
+            read = self._tried(partial(self._read, ItemTable, content, key))
+            if read is not None and self._named(key) and self._item_fits(key, read, made):
+                made.append(_item(item, read))
+        return made
+
+    def _item_fits(self, key: Key, read: ItemTable, before: Sequence[Mapping[str, Any]]) -> bool:
+        """Whether the keys of an item fit together; tells what does not."""
+        problems = list(_misfits(key[-1], read, [item["id"] for item in before]))
+        for problem in problems:
+            self.wrong(key, problem)
+        return not problems
+
+    def _named(self, key: Key) -> bool:
+        if _ID.fullmatch(key[-1]) and key[-1] not in _TAKEN:
+            return True
+        self.wrong(key, "as a name: small letters, digits and _ only, and no column of the table")
+        return False
+
+    def _read(self, kind: type[T], content: Mapping[str, Any], key: Key) -> T:
+        """Return ``content`` as a structure, as if it stood at ``key`` of the file."""
+        standing: Any = self._file.table
+        for name in key[:-1]:
+            standing = standing[name]
+        before, standing[key[-1]] = standing[key[-1]], dict(content)
+        try:
+            return self._file.read(kind, *key)  # type: ignore[type-var]
+        finally:
+            standing[key[-1]] = before
+
+    def _tried(self, call: Callable[[], T]) -> T | None:
+        try:
+            return call()
+        except ModelError as problem:
+            self._problems.append(str(problem))
+            return None
+
+
+def _misfits(name: str, read: ItemTable, before: Sequence[str]) -> Iterator[str]:
+    """Yield what does not fit together in an item."""
+    if read.kind == "choice" and not read.options:
+        yield 'a choice without options: write options = [{ key = "...", en = "..." }, ...]'
+    keys = [option.key for option in read.options]
+    if len(set(keys)) < len(keys):
+        yield "two options have the same key; the answers could not be told apart"
+    if read.kind == "number" and read.low >= read.high:
+        yield f"low = {read.low:g} must be below high = {read.high:g}"
+    if read.kind != "scale" and not any(_both(read.text).values()):
+        yield 'no text: write text = { en = "...", de = "..." }'
+    if asked_by(name) is not None and (read.kind != "scale" or read.boxes != BOXES):
+        yield f'its scale has {BOXES} boxes: write kind = "scale" and boxes = {BOXES}'
+    if read.only_if is not None and read.only_if.id not in before:
+        yield f"only_if: {shown(read.only_if.id)} is no earlier item of this questionnaire"
+
+
+def _item(name: str, read: ItemTable) -> dict[str, Any]:
+    condition = read.only_if
+    return {
+        "id": name,
+        "kind": read.kind,
+        "text": _both(read.text),
+        "options": [_option(option) for option in read.options],
+        "boxes": read.boxes,
+        "left": _both(read.left),
+        "right": _both(read.right),
+        "low": read.low,
+        "high": read.high,
+        "required": read.required,
+        "only_if": condition and {"id": condition.id, "is": list(condition.is_)},
+    }
+
+
+def _option(option: OptionTable) -> dict[str, Any]:
+    english, german = option.en or option.de, option.de or option.en
+    return {"key": option.key, "text": {"en": english or option.key, "de": german or option.key}}
+
+
+def _both(words: Words) -> dict[str, str]:
+    """Return a text in both languages; what one of them lacks is said in the other."""
+    if isinstance(words, str):
+        return {"en": words, "de": words}
+    english, german = words.get("en", ""), words.get("de", "")
+    return {"en": english or german, "de": german or english}
