@@ -7,8 +7,6 @@ import { update } from "./svg.js";
 
 /** @typedef {"pause_learning" | "forget_here" | "undo"} Word a name among the controls */
 
-// The function looks for edges of these inputs: a press is held for some of its steps.
-const HELD_MS = 200;
 /** @type {Record<Word, {icon: string, key: string}>} */
 const BUTTONS = {
   pause_learning: { icon: "paused", key: "P" },
@@ -25,11 +23,10 @@ const words = wording({
 export class Buttons {
   /**
    * @param {Element} parent what they fill
-   * @param {(word: Word, on: boolean) => void} press the pause stays on until it is pressed again
+   * @param {(word: Word) => void} press once per click; the pause is a switch
    */
   constructor(parent, press) {
     this.press = press;
-    this.paused = false;
     const names = /** @type {Word[]} */ (Object.keys(BUTTONS));
     const made = names.map((word) => this.button(word));
     this.pause = made[0];
@@ -56,17 +53,12 @@ export class Buttons {
   clicked(word, event) {
     // A mouse must not leave the focus here: the next key is meant for the car.
     if (event.detail > 0 && event.currentTarget instanceof HTMLElement) event.currentTarget.blur();
-    if (word === "pause_learning") {
-      this.press(word, !this.paused);
-      return;
-    }
-    this.press(word, true);
-    setTimeout(() => this.press(word, false), HELD_MS);
+    this.press(word);
   }
 
   /** @param {import("./sentence.js").Values} values */
   show(values) {
-    this.paused = values["teach.pause"] === true;
-    if (this.pause) update(this.pause, { "aria-pressed": String(this.paused) });
+    const paused = values["teach.pause"] === true;
+    if (this.pause) update(this.pause, { "aria-pressed": String(paused) });
   }
 }

@@ -12,14 +12,15 @@ const SHOWN_MPS = 1 / 3.6;
  * A run of metres where one thing is learned.
  * @typedef {object} Place
  * @property {"pedal" | "lever"} by
+ * @property {boolean} waits it was shown, and is not driven before it has been shown again
  * @property {number} from_m
  * @property {number} to_m last metre of it
  * @property {number} at_m where it deviates most: there "forget here" means this place
  * @property {number} change_mps how much at `at_m`, above 0: faster
  * @property {number} speed_mps learned speed at `at_m`
  * @property {number} base_mps what it would be at `at_m` without lessons
- * @property {number[]} iterations numbers of those that shaped it last
- * @property {number} lessons how many drives shaped it
+ * @property {number[]} iterations numbers of those that shaped it last; none of what waits
+ * @property {number} lessons how many drives shaped it, or have shown what waits
  */
 
 /**
@@ -31,7 +32,10 @@ const SHOWN_MPS = 1 / 3.6;
  */
 export function placesOf(profile, limit_mps, number) {
   const iteration = iterationOf(profile, number);
-  const places = [...pedalPlaces(iteration), ...leverPlaces(profile, iteration, limit_mps)];
+  const places = [
+    ...pedalPlaces(iteration), ...leverPlaces(profile, iteration, limit_mps),
+    ...waitingPlaces(iteration),
+  ];
   return places.sort((a, b) => a.from_m - b.from_m || a.to_m - b.to_m);
 }
 
@@ -65,6 +69,32 @@ function leverPlaces(profile, iteration, limit) {
   }));
 }
 
+/** @param {Iteration} iteration @returns {Place[]} what waits for more evidence */
+function waitingPlaces(iteration) {
+  const base = columnOf(iteration, "base_mps");
+  return ["faster", "slower"].flatMap((sign) => [
+    ...waiting(iteration, "pedal", columnOf(iteration, `pending_${sign}`),
+      columnOf(iteration, `pending_${sign}_mps`).map((speed, i) => speed - at(base, i))),
+    ...waiting(iteration, "lever", columnOf(iteration, `offset_pending_${sign}`),
+      columnOf(iteration, `offset_pending_${sign}_mps`)),
+  ]);
+}
+
+/**
+ * @param {Iteration} iteration
+ * @param {"pedal" | "lever"} by
+ * @param {Float64Array} pending how many demonstrations wait
+ * @param {Float64Array} change_mps their mean against the base profile
+ * @returns {Place[]}
+ */
+function waiting(iteration, by, pending, change_mps) {
+  return runs(pending.map(Math.sign)).map(([from, to]) => {
+    const found = place(by, iteration, change_mps, from, to);
+    const speed_mps = found.base_mps + found.change_mps;
+    return { ...found, speed_mps, waits: true, lessons: at(pending, found.at_m), iterations: [] };
+  });
+}
+
 /**
  * @param {"pedal" | "lever"} by
  * @param {Iteration} iteration
@@ -80,7 +110,7 @@ function place(by, iteration, change_mps, from_m, to_m) {
   const [learned, base] = speeds(iteration);
   const lessons = columnOf(iteration, "lessons").subarray(from_m, to_m + 1);
   return {
-    by, from_m, to_m, at_m: most, change_mps: at(change_mps, most),
+    by, waits: false, from_m, to_m, at_m: most, change_mps: at(change_mps, most),
     speed_mps: at(learned, most), base_mps: at(base, most), lessons: lessons.reduce((a, b) => Math.max(a, b), 0),
   };
 }
