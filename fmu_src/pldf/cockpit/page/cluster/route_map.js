@@ -35,16 +35,21 @@ export class RouteMap {
    * @param {(place: Place) => boolean} forgotten
    */
   show(places, forgotten) {
-    this.places.replaceChildren(...places.flatMap((place, i) => {
-      const kind = place.waits ? "waits" : place.change_mps > 0 ? "faster" : "slower";
-      const state = { "data-kind": kind, "data-forgotten": String(forgotten(place)), "data-number": i + 1 };
-      const [x, y] = this.beside(place.at_m, i);
-      return [
-        svg("path", { "class": "map-place", "d": this.path(place.from_m, place.to_m), ...state }),
-        svg("circle", { "class": "map-badge", "cx": x, "cy": y, "r": BADGE, ...state }),
-        svg("text", { "class": "map-number", "x": x, "y": y + 7, ...state }, String(i + 1)),
-      ];
+    const state = places.map((place, i) => ({
+      "data-kind": kindOf(place), "data-forgotten": String(forgotten(place)), "data-number": i + 1,
     }));
+    const lines = places.map((place, i) =>
+      svg("path", { "class": "map-place", "d": this.path(place.from_m, place.to_m), ...state[i] }),
+    );
+    const wideFirst = lines.filter((_, i) => places[i]?.by === "lever");
+    this.places.replaceChildren(...wideFirst, ...lines.filter((line) => !wideFirst.includes(line)));
+    places.forEach((place, i) => {
+      const [x, y] = this.beside(place.at_m, i);
+      this.places.append(
+        svg("circle", { "class": "map-badge", "cx": x, "cy": y, "r": BADGE, ...state[i] }),
+        svg("text", { "class": "map-number", "x": x, "y": y + 7, ...state[i] }, String(i + 1)),
+      );
+    });
   }
 
   /** @param {number | null} number of the place that is looked at */
@@ -84,6 +89,13 @@ export class RouteMap {
     const off = (index % 2 === 0 ? 1 : -1) * (BADGE + 9);
     return [round(x + (off * (by - ay)) / length), round(y - (off * (bx - ax)) / length)];
   }
+}
+
+/** @param {Place} place @returns {string} */
+function kindOf(place) {
+  if (place.waits) return "waits";
+  if (place.by === "lever") return "lever";
+  return place.change_mps > 0 ? "faster" : "slower";
 }
 
 /**

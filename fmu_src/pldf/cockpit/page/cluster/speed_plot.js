@@ -99,7 +99,9 @@ export class SpeedPlot {
     this.places = places;
     const kilometres = Array.from(curves.limit_mps, (_, metre) => metre / 1000);
     const speeds = [curves.limit_mps, curves.base_mps, curves.driven_mps, curves.next_mps];
-    this.plot.setData([kilometres, ...speeds.map((values) => plotted(values, this.unit))]);
+    const first = this.plot.data[0].length === 0; // later ones keep the stretch that is looked at
+    this.plot.setData([kilometres, ...speeds.map((values) => plotted(values, this.unit))], first);
+    if (!first) this.plot.redraw();
   }
 
   /** Look closer at a place; at all of the road without one. @param {Place | null} place */

@@ -17,7 +17,7 @@ const words = wording({
     waits: "{count} more wait to be shown again.",
     faster: "{change}: {speed} instead of {base}", between: "{from} to {to} km",
     waiting: "{change}: noted, not driven before you have shown it again",
-    lever: "{change}: your set speed under this limit",
+    lever: "{change}: set speed {speed} at limit {limit}",
     fresh: "new from this drive", drive: "learned in drive {drive}", shown: "shown in {count} of your drives",
   },
   de: {
@@ -28,7 +28,7 @@ const words = wording({
     waits: "{count} weitere warten darauf, noch einmal gezeigt zu werden.",
     faster: "{change}: {speed} statt {base}", between: "{from} bis {to} km",
     waiting: "{change}: gemerkt; gefahren wird es erst, wenn Sie es wieder gezeigt haben",
-    lever: "{change}: Ihr Setztempo bei diesem Limit",
+    lever: "{change}: Setztempo {speed} bei Tempolimit {limit}",
     fresh: "neu aus dieser Fahrt", drive: "gelernt in Fahrt {drive}", shown: "in {count} Ihrer Fahrten gezeigt",
   },
 });
@@ -81,7 +81,10 @@ export function summary(interventions, places) {
 export function lesson(place, unit) {
   const change = `${changeText(place.change_mps, unit)} ${unitText(unit)}`;
   if (place.waits) return words("waiting", { change });
-  if (place.by === "lever") return words("lever", { change });
+  if (place.by === "lever") {
+    const [speed, limit] = [place.limit_mps + place.change_mps, place.limit_mps];
+    return words("lever", { change, speed: speedText(speed, unit), limit: speedText(limit, unit) });
+  }
   const [speed, base] = [speedText(place.speed_mps, unit), speedText(place.base_mps, unit)];
   return words("faster", { change, speed, base });
 }

@@ -19,6 +19,7 @@ const SHOWN_MPS = 1 / 3.6;
  * @property {number} change_mps how much at `at_m`, above 0: faster
  * @property {number} speed_mps learned speed at `at_m`
  * @property {number} base_mps what it would be at `at_m` without lessons
+ * @property {number} limit_mps legal limit at `at_m`
  * @property {number[]} iterations numbers of those that shaped it last; none of what waits
  * @property {number} lessons how many drives shaped it, or have shown what waits
  */
@@ -35,19 +36,29 @@ export function placesOf(profile, limit_mps, number) {
   const places = [
     ...pedalPlaces(iteration), ...leverPlaces(profile, iteration, limit_mps),
     ...waitingPlaces(iteration),
-  ];
+  ].map((found) => ({ ...found, limit_mps: at(limit_mps, Math.min(found.at_m, limit_mps.length - 1)) }));
   return places.sort((a, b) => a.from_m - b.from_m || a.to_m - b.to_m);
 }
 
-/** @param {Iteration} iteration @returns {Place[]} */
+/** @typedef {Omit<Place, "limit_mps">} Found */
+
+/**
+ * Return where pedals taught more than what the learned set speed does: that alone moves the plan by
+ * its offset at most.
+ * @param {Iteration} iteration
+ * @returns {Found[]}
+ */
 function pedalPlaces(iteration) {
   const [learned, base] = speeds(iteration);
   const drive = columnOf(iteration, "drive");
   const byPedal = columnOf(iteration, "intervention");
+  const offset = columnOf(iteration, "offset_mps");
   const change = learned.map((speed, i) => speed - at(base, i));
-  const sign = change.map((mps, i) =>
-    Math.abs(mps) > SHOWN_MPS && at(drive, i) > 0 && at(byPedal, i) > 0 ? Math.sign(mps) : 0,
-  );
+  const sign = change.map((mps, i) => {
+    const [low, high] = [Math.min(at(offset, i), 0), Math.max(at(offset, i), 0)];
+    const apart = mps < low - SHOWN_MPS || mps > high + SHOWN_MPS;
+    return apart && at(drive, i) > 0 && at(byPedal, i) > 0 ? Math.sign(mps) : 0;
+  });
   return runs(sign).map(([from, to]) => ({
     ...place("pedal", iteration, change, from, to),
     iterations: distinct(drive, from, to),
@@ -58,7 +69,7 @@ function pedalPlaces(iteration) {
  * @param {Profile} profile
  * @param {Iteration} iteration
  * @param {Float64Array} limit
- * @returns {Place[]}
+ * @returns {Found[]}
  */
 function leverPlaces(profile, iteration, limit) {
   const offset = columnOf(iteration, "offset_mps");
@@ -69,7 +80,7 @@ function leverPlaces(profile, iteration, limit) {
   }));
 }
 
-/** @param {Iteration} iteration @returns {Place[]} what waits for more evidence */
+/** @param {Iteration} iteration @returns {Found[]} what waits for more evidence */
 function waitingPlaces(iteration) {
   const base = columnOf(iteration, "base_mps");
   return ["faster", "slower"].flatMap((sign) => [
@@ -85,7 +96,7 @@ function waitingPlaces(iteration) {
  * @param {"pedal" | "lever"} by
  * @param {Float64Array} pending how many demonstrations wait
  * @param {Float64Array} change_mps their mean against the base profile
- * @returns {Place[]}
+ * @returns {Found[]}
  */
 function waiting(iteration, by, pending, change_mps) {
   return runs(pending.map(Math.sign)).map(([from, to]) => {
