@@ -27,6 +27,8 @@ _HEADERS: Final = {
     "cross-origin-resource-policy": "same-origin",
     "cache-control": "no-store",
 }
+# Addresses that only this machine reaches.
+LOOPBACK: Final = ("127.0.0.1", "localhost", "::1")
 _POLICY_VIOLATION: Final = 1008  # of WebSocket, RFC 6455
 
 

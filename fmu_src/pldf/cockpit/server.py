@@ -23,7 +23,7 @@ from starlette.types import ASGIApp
 from ..errors import ModelError
 from ..roads.options import OptionNeededError, keywords, said
 from .dropped_road import ROAD_MAX, dropped_road
-from .guard import Guard
+from .guard import LOOPBACK, Guard
 from .live import MESSAGE_MAX, Live
 from .page_json import plain
 from .storage import FILE_MAX, NOT_THERE, Folder, Refused
@@ -37,7 +37,6 @@ _TYPES: Final = {
     ".svg": "image/svg+xml",
     ".txt": "text/plain; charset=utf-8",
 }
-LOOPBACK: Final = ("127.0.0.1", "localhost", "::1")
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,80 @@
+"""The whole page as one file that works from a disk: scripts, styles, models, road and study."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+from pathlib import Path
+from typing import Final
+
+from ..errors import ModelError
+from ..files.disk import replace_file
+from .one_script import one_script
+from .server import PAGE
+
+MAIN: Final = "main.js"
+WORKER: Final = "engine/worker.js"
+_STYLE: Final = re.compile(r'<link rel="stylesheet" href="([^"]+)"\s*/?>\n?')
+_SCRIPT: Final = re.compile(r'<script type="module" src="([^"]+)"></script>')
+
+
+def write_export(path: Path, bundle: bytes) -> None:
+    """Write the page with this bundle (JSON without ``<``) into one HTML file.
+
+    Raises:
+        ModelError: the file cannot be written.
+    """
+    try:
+        replace_file(path, exported_page(bundle).encode())
+    except OSError as problem:
+        raise ModelError(
+            f"{path}: cannot be written ({problem.strerror}); choose another place with --export"
+        ) from None
+
+
+def exported_page(bundle: bytes, page: Path = PAGE) -> str:
+    """Return the page as one HTML text.
+
+    Args:
+        bundle: the bundle as JSON without ``<``.
+        page: folder of the page.
+    """
+    text = (page / "index.html").read_text(encoding="utf-8")
+    style = "\n".join((page / name).read_text(encoding="utf-8") for name in _STYLE.findall(text))
+    addresses = json.dumps({WORKER: _as_address(one_script(page, WORKER))})
+    script = _inside(f"globalThis.pldfModules = {addresses};\n{one_script(page, MAIN)}")
+    policy = _policy(script, style)
+    head = (
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n<style>{style}</style>\n'
+    )
+    data = f'<script type="application/json" id="bundle">{bundle.decode()}</script>'
+    text = _STYLE.sub("", text).replace("</head>", f"{head}</head>", 1)
+    return _SCRIPT.sub(lambda _: f'{data}\n<script type="module">{script}</script>', text)
+
+
+def _as_address(script: str) -> str:
+    """Return a script as an address: a page from a disk cannot start a worker from elsewhere."""
+    return f"data:text/javascript;base64,{base64.b64encode(script.encode()).decode()}"
+
+
+def _inside(script: str) -> str:
+    """Return a script in which nothing ends the element that it stands in.
+
+    Both are found in texts and comments only, where the sign may be written so.
+    """
+    return re.sub(r"<(?=/script|!--)", r"\\x3C", script, flags=re.IGNORECASE)
+
+
+def _policy(script: str, style: str) -> str:
+    """Return what the page may do: run its own scripts, and ask nobody."""
+    return (
+        f"default-src 'none'; script-src {_hash(script)} 'wasm-unsafe-eval'; worker-src data:; "
+        f"style-src {_hash(style)}; img-src data: blob:; connect-src 'none'; base-uri 'none'; "
+        "form-action 'none'"
+    )
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
