@@ -17,6 +17,7 @@ from ..analysis.checks import Checks, analysed
 from ..analysis.published import DRIVERS, TESTS, published_means
 from ..analysis.questionnaires import SCALES, Questionnaire
 from ..analysis.study_folder import StudyFolder
+from ..analysis.unpacked import SUFFIX, unpacked_study
 from .shared.mapping import add_map, chosen_map, remember_map
 from .shared.progress import recordings_bar
 from .shared.road import add_road, chosen_road
@@ -24,6 +25,7 @@ from .shared.telling import tell
 
 EXAMPLE: Final = (
     "pldf analyse out --report report.html\n"
+    "  pldf analyse cockpit-P07.zip cockpit-P08.zip\n"
     "  pldf analyse laboratory --route road.xodr --without P07 --figures paper --format pdf"
 )
 
@@ -41,8 +43,9 @@ _NAMES: Final = {
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``pldf analyse``."""
     parser.add_argument(
-        "folder", metavar="FOLDER", type=Path,
-        help="with drives.csv or recordings/PARTICIPANT_PHASE.csv, and questionnaire.csv if any",
+        "folders", metavar="FOLDER", type=Path, nargs="+",
+        help="with drives.csv or recordings/PARTICIPANT_PHASE.csv, and questionnaire.csv if any; "
+        "or the .zip files that an exported cockpit handed out: unpacked into a folder beside them",
     )  # fmt: skip
     parser.add_argument(
         "--without", action="append", default=[], metavar="NAME",
@@ -73,10 +76,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--driver", metavar="PARTICIPANT",
         help="whom report and figures show in detail (default: nearest to the median effect)",
     )  # fmt: skip
+    parser.set_defaults(wrong_usage=parser.error)
 
 
 def run(options: argparse.Namespace) -> None:
     """Analyse, write the tables, print what was found and where it is."""
+    options.folder = _folder(options)
     road = chosen_road(options)
     route = road.route if road else None
     study = StudyFolder(
@@ -96,6 +101,17 @@ def run(options: argparse.Namespace) -> None:
     if options.report or options.figures:
         _show(analysis, study, checks, options)
     print(f"Tables: {', '.join(path.name for path in written)} in {written[0].parent}.")
+
+
+def _folder(options: argparse.Namespace) -> Path:
+    """Return the folder of the study; zip files are unpacked into one."""
+    folders: list[Path] = options.folders
+    zipped = [path for path in folders if path.suffix.lower() == SUFFIX and path.is_file()]
+    if zipped and len(zipped) == len(folders):
+        return unpacked_study(zipped)
+    if len(folders) > 1:
+        options.wrong_usage("one FOLDER, or .zip files only")
+    return folders[0]
 
 
 def _show(
