@@ -95,7 +95,7 @@ class _Reading:
     def moments(self, key: Key, after: object) -> list[str]:
         """Return when something is asked, checked."""
         known = [*PHASES, *MOMENTS]
-        if not isinstance(after, list | tuple) or any(moment not in known for moment in after):
+        if not isinstance(after, list) or any(moment not in known for moment in after):
             self.wrong(key, f"{shown(after)} must be a list out of {', '.join(map(shown, known))}")
             return []
         return list(after)
@@ -142,7 +142,7 @@ class _Reading:
             "id": name,
             "title": _both(read.title),
             "intro": _both(read.intro),
-            "after": self.moments((name, "after"), read.after),
+            "after": self.moments((name, "after"), list(read.after)),
             "items": items,
         }
 
