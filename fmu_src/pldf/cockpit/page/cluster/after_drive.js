@@ -66,7 +66,7 @@ export class AfterDrive {
       plot, this.error, this.list.root,
     );
     fill(parent, this.root);
-    this.plot = new SpeedPlot(plot, unit, (s_m) => this.map.mark(s_m));
+    this.plot = new SpeedPlot(plot, unit, "next", (s_m) => this.map.mark(s_m));
     this.show(this.profile);
   }
 
@@ -81,7 +81,7 @@ export class AfterDrive {
         limit_mps: road.limit_mps,
         base_mps: newest ? columnOf(newest, "base_mps") : this.planned,
         driven_mps: this.driven,
-        next_mps: newest ? columnOf(newest, "learned_mps") : new Float64Array(road.nodes).fill(NaN),
+        last_mps: newest ? columnOf(newest, "learned_mps") : new Float64Array(road.nodes).fill(NaN),
       },
       this.interventions, this.places,
     );

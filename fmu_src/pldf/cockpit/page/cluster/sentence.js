@@ -1,5 +1,5 @@
 // What the cluster says, by the project's table of reasons and events: which row, whether it may be
-// shown under a condition, and its words where the FMU's own (hmi.text) are not at hand.
+// shown under a condition, and its words.
 
 /** @typedef {import("../types.js").Value} Value */
 /** @typedef {import("../types.js").HmiTexts} HmiTexts */
@@ -44,7 +44,8 @@ export function rowOf(texts, values) {
 }
 
 /**
- * Return the sentence that belongs to a row: as the FMU says it, else made of the table.
+ * Return the sentence that belongs to a row, in the language of the page: made of the table and its
+ * numbers, or as the FMU says it (hmi.text) where its numbers are not at hand.
  * @param {Row} row
  * @param {Values} values
  * @param {Language} language
@@ -52,8 +53,8 @@ export function rowOf(texts, values) {
  */
 export function sentenceOf(row, values, language) {
   const spoken = values["hmi.text"];
-  const urgent = row.name === "TAKE_OVER";
-  if (typeof spoken === "string" && spoken !== "" && !urgent) return spoken;
+  const told = values["hmi.sentence"] !== undefined || row.name === "TAKE_OVER";
+  if (!told && typeof spoken === "string" && spoken !== "") return spoken;
   const drive = Number(values["hmi.sentence_drive"] ?? 0);
   const text = row[language === "de" ? "DE" : "EN"].replace(/\[(.*?)\]/g, drive > 0 ? "$1" : "");
   return NUMBERS.reduce(

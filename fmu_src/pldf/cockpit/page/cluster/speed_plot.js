@@ -14,7 +14,7 @@ import { unitText } from "./units.js";
  * @property {Float64Array} limit_mps
  * @property {Float64Array} base_mps
  * @property {Float64Array} driven_mps
- * @property {Float64Array} next_mps
+ * @property {Float64Array} last_mps learned for the next drive, or driven after now
  */
 
 // Okabe and Ito's colours, as in the project's report.
@@ -28,13 +28,13 @@ const HEIGHT_PX = 300;
 const words = wording({
   en: {
     distance: "Distance (km)", speed: "Speed ({unit})",
-    limit: "Limit", base: "Without lessons", driven: "You drove", next: "Next drive",
-    label: "Speed over distance: limit, speed without lessons, your speed, speed of the next drive",
+    limit: "Limit", base: "Without lessons", driven: "Driven", next: "Next drive", profile: "Profile",
+    label: "Speed over distance: limit, speed without lessons, driven, learned",
   },
   de: {
     distance: "Weg (km)", speed: "Tempo ({unit})",
-    limit: "Tempolimit", base: "Ohne Gelerntes", driven: "Sie fuhren", next: "Nächste Fahrt",
-    label: "Tempo über dem Weg: Limit, Tempo ohne Gelerntes, Ihr Tempo, Tempo der nächsten Fahrt",
+    limit: "Tempolimit", base: "Ohne Gelerntes", driven: "Gefahren", next: "Nächste Fahrt", profile: "Profil",
+    label: "Tempo über dem Weg: Limit, Tempo ohne Gelerntes, gefahrenes und gelerntes Tempo",
   },
 });
 
@@ -43,11 +43,13 @@ export class SpeedPlot {
   /**
    * @param {HTMLElement} parent
    * @param {Unit} unit
-   * @param {(s_m: number | null) => void} onlook where the pointer is
+   * @param {"next" | "profile"} last what the fourth curve is
+   * @param {(s_m: number | null) => void} [onlook] where the pointer is
    */
-  constructor(parent, unit, onlook) {
+  constructor(parent, unit, last, onlook = () => {}) {
     this.parent = parent;
     this.unit = unit;
+    this.last = last;
     /** @type {Intervention[]} */
     this.interventions = [];
     /** @type {Place[]} */
@@ -79,7 +81,7 @@ export class SpeedPlot {
         { label: words("limit"), stroke: GREY, width: 2, paths: uPlot.paths.stepped?.({ align: 1 }), value: speed },
         { label: words("base"), stroke: BLUE, width: 1.5, dash: [6, 4], value: speed },
         { label: words("driven"), stroke: BLACK, width: 1.5, value: speed },
-        { label: words("next"), stroke: VERMILLION, width: 2.5, value: speed },
+        { label: words(this.last), stroke: VERMILLION, width: 2.5, value: speed },
       ],
       hooks: {
         drawClear: [() => this.drawActions()],
@@ -98,7 +100,7 @@ export class SpeedPlot {
     this.interventions = interventions;
     this.places = places;
     const kilometres = Array.from(curves.limit_mps, (_, metre) => metre / 1000);
-    const speeds = [curves.limit_mps, curves.base_mps, curves.driven_mps, curves.next_mps];
+    const speeds = [curves.limit_mps, curves.base_mps, curves.driven_mps, curves.last_mps];
     const first = this.plot.data[0].length === 0; // later ones keep the stretch that is looked at
     this.plot.setData([kilometres, ...speeds.map((values) => plotted(values, this.unit))], first);
     if (!first) this.plot.redraw();

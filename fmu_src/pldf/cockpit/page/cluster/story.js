@@ -53,21 +53,30 @@ export function perMetre(frames, nodes, name = "vehicle.speed_mps") {
 }
 
 /**
+ * @param {Intervention[]} interventions
+ * @returns {string} how many of which kind, empty if there are none
+ */
+export function actions(interventions) {
+  const kinds = /** @type {const} */ (["gas", "brake", "set_speed"]);
+  return kinds
+    .map((kind) => ({ kind, count: interventions.filter((found) => found.kind === kind).length }))
+    .filter(({ count }) => count > 0)
+    .map(({ kind, count }) => words(kind, { count }))
+    .join(", ");
+}
+
+/**
  * Say what the person did and what is known now.
  * @param {Intervention[]} interventions
  * @param {Place[]} places
  * @returns {string}
  */
 export function summary(interventions, places) {
-  const kinds = /** @type {const} */ (["gas", "brake", "set_speed"]);
-  const list = kinds
-    .map((kind) => ({ kind, count: interventions.filter((found) => found.kind === kind).length }))
-    .filter(({ count }) => count > 0)
-    .map(({ kind, count }) => words(kind, { count }));
+  const list = actions(interventions);
   const waiting = places.filter((place) => place.waits).length;
   const known = places.length - waiting;
   return [
-    list.length > 0 ? words("did", { list: list.join(", ") }) : words("nothing"),
+    list === "" ? words("nothing") : words("did", { list }),
     known === 0 ? words("noneLearned") : words(known === 1 ? "oneLearned" : "learned", { count: known }),
     waiting > 0 && words("waits", { count: waiting }),
   ].filter(Boolean).join(" ");
