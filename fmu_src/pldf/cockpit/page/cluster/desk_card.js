@@ -60,6 +60,8 @@ export class DeskCard {
     /** @type {SpeedPlot | null} */
     this.plot = null;
     this.plotted = plot;
+    /** @type {import("../types.js").Frame | null} the newest one in the plot */
+    this.drawn = null;
   }
 
   listed() {
@@ -112,7 +114,11 @@ export class DeskCard {
   draw(interventions) {
     const { frames, status } = this.watched;
     const { limit_mps, nodes } = this.desk;
-    this.plot ??= new SpeedPlot(this.plotted, status?.unit ?? "KMH", "profile");
+    const unit = status?.unit ?? "KMH";
+    const newest = frames.at(-1) ?? null;
+    if (this.plot?.unit === unit && this.drawn === newest) return;
+    this.drawn = newest;
+    this.plot = this.plotFor(unit);
     this.plot.show(
       {
         limit_mps, base_mps: perMetre(frames, nodes, "base_speed_mps"),
@@ -120,5 +126,12 @@ export class DeskCard {
       },
       interventions, [],
     );
+  }
+
+  /** @param {import("./live.js").Unit} unit @returns {SpeedPlot} */
+  plotFor(unit) {
+    if (this.plot?.unit === unit) return this.plot;
+    this.plot?.dispose();
+    return new SpeedPlot(this.plotted, unit, "profile");
   }
 }

@@ -15,7 +15,7 @@ import { Watched } from "./watched.js";
  * @typedef {object} Wanted
  * @property {string | null} participant only this one's drives
  * @property {Explanation | null} explanation
- * @property {Unit | null} unit
+ * @property {Unit | null} unit of a simulator, which tells none: as its `hmi.unit`
  * @property {Language | null} language
  */
 
@@ -105,7 +105,7 @@ export class SecondScreen {
     const fresh = this.drive?.isFresh(performance.now()) === true;
     this.make(
       this.wanted.explanation ?? status?.explanation ?? "text",
-      this.wanted.unit ?? status?.unit ?? "KMH",
+      status?.unit ?? this.wanted.unit ?? "KMH", // the sentence's numbers are in the drive's unit
       this.wanted.language ?? status?.language ?? this.language,
     );
     this.cluster?.show(fresh && this.drive ? this.drive.values : {});

@@ -101,9 +101,12 @@ export class SpeedPlot {
     this.places = places;
     const kilometres = Array.from(curves.limit_mps, (_, metre) => metre / 1000);
     const speeds = [curves.limit_mps, curves.base_mps, curves.driven_mps, curves.last_mps];
-    const first = this.plot.data[0].length === 0; // later ones keep the stretch that is looked at
-    this.plot.setData([kilometres, ...speeds.map((values) => plotted(values, this.unit))], first);
-    if (!first) this.plot.redraw();
+    const { min = 0, max = 0 } = this.plot.scales["x"] ?? {};
+    const looked = max > min; // later curves keep the stretch that is looked at
+    this.plot.batch(() => {
+      this.plot.setData([kilometres, ...speeds.map((values) => plotted(values, this.unit))]);
+      if (looked) this.plot.setScale("x", { min, max });
+    });
   }
 
   /** Look closer at a place; at all of the road without one. @param {Place | null} place */
