@@ -1,0 +1,44 @@
+// How many pixels the picture has: fewer where the machine is slow, since a drive must run smoothly.
+
+const FRAMES = 40; // looked at together
+const SLOW_MS = 45;
+const FAST_MS = 20;
+const STEP = 0.8;
+const LOWEST = 0.5;
+const PAUSE_MS = 500; // no frame at all: a pause, not a slow machine
+
+/** Watches the time between frames. */
+export class Sharpness {
+  /** @param {number} finest pixels of the picture per pixel of the page */
+  constructor(finest) {
+    this.finest = finest;
+    this.ratio = finest;
+    /** @type {number[]} */
+    this.times_ms = [];
+    this.last_ms = NaN;
+  }
+
+  /** @param {number} now_ms @returns {boolean} `ratio` has changed */
+  frame(now_ms) {
+    const passed_ms = now_ms - this.last_ms;
+    this.last_ms = now_ms;
+    if (!(passed_ms < PAUSE_MS)) return false;
+    this.times_ms.push(passed_ms);
+    if (this.times_ms.length < FRAMES) return false;
+    const middle = this.times_ms.sort((a, b) => a - b)[FRAMES / 2];
+    this.times_ms = [];
+    const before = this.ratio;
+    if (middle > SLOW_MS) this.ratio = Math.max(this.ratio * STEP, LOWEST);
+    else if (middle < FAST_MS) this.ratio = Math.min(this.ratio / STEP, this.finest);
+    return this.ratio !== before;
+  }
+}
+
+/** Whether the processor paints, not a graphics card. @param {HTMLCanvasElement} canvas */
+export function isSoftware(canvas) {
+  const probe = canvas.ownerDocument.createElement("canvas").getContext("webgl2");
+  const named = probe?.getExtension("WEBGL_debug_renderer_info");
+  const name = named ? String(probe?.getParameter(named.UNMASKED_RENDERER_WEBGL)) : "";
+  probe?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}

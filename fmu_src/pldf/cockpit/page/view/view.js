@@ -1,0 +1,126 @@
+// What the driver sees: the room's front door.
+import { Fog, PerspectiveCamera, Scene, WebGLRenderer } from "../vendor/three.js";
+import { CAR_LENGTH_M, car } from "./car.js";
+import { look, setLens } from "./eye.js";
+import { Interior } from "./interior.js";
+import { Mirror } from "./mirror.js";
+import { Sharpness, isSoftware } from "./sharpness.js";
+import { HAZE, sky } from "./sky.js";
+import { SIGHT_M, World } from "./world.js";
+
+/** @typedef {import("../engine/road.js").RoadModel} RoadModel */
+/** @typedef {import("./eye.js").CameraName} CameraName */
+/** @typedef {import("./eye.js").Sight} Sight */
+/**
+ * @typedef {object} ViewOptions
+ * @property {number} fov_deg what is seen from left to right
+ * @property {CameraName} camera
+ * @property {boolean} mirror
+ * @property {boolean} reducedMotion the picture does not move with the car's body
+ */
+
+const NEAR_M = 0.3;
+const CLEAR_M = 250; // the haze begins
+const OWN_PAINT = 0x2d5f8f;
+const LEAD_PAINT = 0xb9402f;
+
+/** Draws a road into a canvas. */
+export class View {
+  /**
+   * @param {HTMLCanvasElement} canvas as large as the page's style makes it
+   * @param {RoadModel} road
+   * @param {ViewOptions} options may be changed at any time, followed by `resize()`
+   */
+  constructor(canvas, road, options) {
+    this.canvas = canvas;
+    this.road = road;
+    this.options = options;
+    const software = isSoftware(canvas);
+    this.renderer = new WebGLRenderer({ canvas, antialias: !software, powerPreference: "high-performance" });
+    this.sharpness = new Sharpness(software ? 1 : Math.min(globalThis.devicePixelRatio || 1, 2));
+    this.lens = new PerspectiveCamera(50, 1, NEAR_M, 2.2 * SIGHT_M);
+    this.scene = new Scene();
+    this.scene.fog = new Fog(HAZE, CLEAR_M, SIGHT_M);
+    this.sky = sky();
+    this.world = new World(road, software ? 4 : 8);
+    this.own = car(OWN_PAINT);
+    this.ahead = car(LEAD_PAINT);
+    this.interior = new Interior(road.side);
+    this.mirror = new Mirror();
+    this.scene.add(this.sky, this.world.group, this.own, this.ahead, this.interior.group);
+    this.frames = 0;
+    this.resize();
+  }
+
+  /** Which camera; it counts from the next frame on. @param {CameraName} name */
+  set camera(name) {
+    this.options.camera = name;
+    this.resize();
+  }
+
+  get camera() {
+    return this.options.camera;
+  }
+
+  /** After a change of the canvas' size or of the options. */
+  resize() {
+    const [width, height] = [this.canvas.clientWidth || 1, this.canvas.clientHeight || 1];
+    this.renderer.setPixelRatio(this.sharpness.ratio);
+    this.renderer.setSize(width, height, false);
+    setLens(this.lens, this.options.fov_deg, width, height, this.options.camera);
+    this.mirror.resize(width, height);
+  }
+
+  /** @param {Sight} sight */
+  draw(sight) {
+    if (this.sharpness.frame(performance.now())) this.resize();
+    this.world.surround(sight.s_m, this.frames === 0);
+    const { camera, reducedMotion, mirror } = this.options;
+    const origin = look(this.lens, this.road, sight, camera, reducedMotion);
+    this.world.shift(origin);
+    this.sky.position.copy(this.lens.position);
+    this.#cars(sight, origin);
+    const shown = mirror && camera === "cockpit";
+    if (shown && this.frames % 2 === 0) this.#lookBack();
+    this.interior.group.visible = camera === "cockpit";
+    this.interior.follow(this.lens);
+    this.interior.steer(this.road.curvatureAt(sight.s_m) + sight.heading_rad * 0.02);
+    this.renderer.render(this.scene, this.lens);
+    if (shown) this.mirror.show(this.renderer);
+    this.frames += 1;
+  }
+
+  /** Give the memory back; nothing can be drawn afterwards. */
+  dispose() {
+    this.world.dispose();
+    this.mirror.dispose();
+    this.interior.dispose();
+    for (const part of [this.sky, this.own, this.ahead]) part.geometry.dispose();
+    this.renderer.dispose();
+  }
+
+  /** @param {Sight} sight @param {{x_m: number, y_m: number}} origin */
+  #cars(sight, origin) {
+    const left_m = this.road.lane_m + sight.lateral_m;
+    this.own.visible = this.options.camera === "chase";
+    this.#park(this.own, sight.s_m, left_m, sight.heading_rad, origin);
+    this.ahead.visible = sight.lead !== null;
+    if (!sight.lead) return;
+    const front_m = sight.s_m + sight.lead.gap_m + CAR_LENGTH_M;
+    this.#park(this.ahead, front_m, this.road.lane_m, 0, origin);
+  }
+
+  /** @param {import("../vendor/three.js").Mesh} mesh @param {number} front_m @param {number} left_m @param {number} turn @param {{x_m: number, y_m: number}} origin */
+  #park(mesh, front_m, left_m, turn, origin) {
+    const [front, rear] = [this.road.at(front_m, left_m), this.road.at(front_m - CAR_LENGTH_M, left_m)];
+    mesh.position.set(front.x_m - origin.x_m, front.z_m, origin.y_m - front.y_m);
+    const heading = Math.atan2(front.y_m - rear.y_m, front.x_m - rear.x_m) + turn;
+    mesh.rotation.order = "YXZ";
+    mesh.rotation.set(front.pitch_rad, heading - Math.PI / 2, 0);
+  }
+
+  #lookBack() {
+    this.interior.group.visible = false;
+    this.mirror.see(this.renderer, this.scene, this.lens);
+  }
+}

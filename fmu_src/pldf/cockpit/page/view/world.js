@@ -1,0 +1,124 @@
+// The road and the land around the driver: built piece by piece before they are seen.
+import { Group, Mesh, MeshBasicMaterial } from "../vendor/three.js";
+import { Ground } from "./ground.js";
+import { PIECE_M, piece } from "./piece.js";
+import { furnitureOf } from "./plan.js";
+import { crossSection } from "./profile.js";
+import { TILE_M, tile } from "./terrain.js";
+import { grassTexture, roadTexture } from "./textures.js";
+
+/** @typedef {import("../engine/road.js").RoadModel} RoadModel */
+/** @typedef {import("./mesh.js").Origin} Origin */
+/** @typedef {{group: Group | Mesh, origin: Origin, fine: boolean}} Built */
+
+/** so far one sees */
+export const SIGHT_M = 1200;
+const BEHIND_M = 300;
+const DETAIL_M = 220;
+const FINE_M = 420;
+const BUILT_AT_ONCE = 1; // per frame: a drive must not stutter
+
+export class World {
+  /** @param {RoadModel} road @param {number} anisotropy how sharp pictures are at a flat angle */
+  constructor(road, anisotropy) {
+    this.road = road;
+    this.group = new Group();
+    const section = crossSection(road);
+    const asphalt = (/** @type {import("./textures.js").Marking} */ marking) =>
+      new MeshBasicMaterial({ map: roadTexture(section, marking, anisotropy), vertexColors: true });
+    /** @type {import("./piece.js").Kit} */
+    this.kit = {
+      road,
+      section,
+      furniture: furnitureOf(road),
+      ground: new Ground(road),
+      asphalt: { dashed: asphalt("dashed"), solid: asphalt("solid"), town: asphalt("town") },
+      grass: new MeshBasicMaterial({ map: grassTexture(anisotropy), vertexColors: true }),
+      paving: new MeshBasicMaterial({ vertexColors: true }),
+    };
+    /** @type {Map<string, Built>} */
+    this.built = new Map();
+  }
+
+  /**
+   * Build what comes into sight around a place and drop what is out of it.
+   * @param {number} s_m
+   * @param {boolean} all at once, before the first frame
+   */
+  surround(s_m, all) {
+    const wanted = [...this.#pieces(s_m), ...this.#tiles(s_m)];
+    const keys = new Set(wanted.map((each) => each.key));
+    for (const [key, built] of this.built) if (!keys.has(key)) this.#drop(key, built);
+    let room = all ? Infinity : BUILT_AT_ONCE;
+    for (const { key, fine, build } of wanted.sort((a, b) => a.distance_m - b.distance_m)) {
+      const there = this.built.get(key);
+      if (there?.fine === fine) continue;
+      if (room-- <= 0) break;
+      if (there) this.#drop(key, there);
+      this.#keep(key, fine, build());
+    }
+  }
+
+  /** Put everything where it lies as seen from a point. @param {Origin} eye */
+  shift(eye) {
+    for (const { group, origin } of this.built.values()) {
+      group.position.set(origin.x_m - eye.x_m, 0, eye.y_m - origin.y_m);
+    }
+  }
+
+  dispose() {
+    for (const [key, built] of this.built) this.#drop(key, built);
+    for (const material of [...Object.values(this.kit.asphalt), this.kit.grass, this.kit.paving]) {
+      /** @type {MeshBasicMaterial} */ (material).map?.dispose();
+      material.dispose();
+    }
+  }
+
+  /** @param {number} s_m */
+  #pieces(s_m) {
+    const last = Math.ceil(this.road.length_m / PIECE_M) - 1;
+    const [from, to] = [s_m - BEHIND_M, s_m + SIGHT_M].map((at) => Math.floor(at / PIECE_M));
+    const wanted = [];
+    for (let k = Math.max(from, 0); k <= Math.min(to, last); k++) {
+      const middle = (k + 0.5) * PIECE_M;
+      const distance_m = Math.abs(middle - s_m);
+      const fine = middle > s_m - PIECE_M && distance_m < DETAIL_M;
+      wanted.push({ key: `piece ${k}`, fine, distance_m, build: () => piece(this.kit, k, fine) });
+    }
+    return wanted;
+  }
+
+  /** @param {number} s_m */
+  #tiles(s_m) {
+    const { x_m, y_m } = this.road.at(s_m);
+    const [i0, j0] = [x_m, y_m].map((at) => Math.floor(at / TILE_M));
+    const reach = Math.ceil(SIGHT_M / TILE_M);
+    const wanted = [];
+    for (let i = i0 - reach; i <= i0 + reach; i++) {
+      for (let j = j0 - reach; j <= j0 + reach; j++) {
+        const distance_m = Math.hypot((i + 0.5) * TILE_M - x_m, (j + 0.5) * TILE_M - y_m);
+        if (distance_m > SIGHT_M + TILE_M) continue;
+        const fine = distance_m < FINE_M;
+        const build = () => {
+          const { mesh, origin } = tile(this.kit.ground, i, j, fine, this.kit.grass);
+          return { group: mesh, origin };
+        };
+        wanted.push({ key: `tile ${i} ${j}`, fine, distance_m, build });
+      }
+    }
+    return wanted;
+  }
+
+  /** @param {string} key @param {boolean} fine @param {{group: Group | Mesh, origin: Origin}} made */
+  #keep(key, fine, { group, origin }) {
+    this.group.add(group);
+    this.built.set(key, { group, origin, fine });
+  }
+
+  /** @param {string} key @param {Built} built */
+  #drop(key, { group }) {
+    this.group.remove(group);
+    group.traverse((part) => part instanceof Mesh && part.geometry.dispose());
+    this.built.delete(key);
+  }
+}
