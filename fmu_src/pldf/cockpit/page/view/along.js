@@ -3,7 +3,7 @@ import { KERB_M, PARAPET_M, beyondEdge } from "./profile.js";
 
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
 /** @typedef {import("./mesh.js").MeshBuilder} MeshBuilder */
-/** @typedef {import("./textures.js").CrossSection} CrossSection */
+/** @typedef {import("./profile.js").CrossSection} CrossSection */
 /** @typedef {{road: RoadModel, section: CrossSection, solid: MeshBuilder}} Site */
 
 const WHITE = 0xf2f2ee;

@@ -56,10 +56,10 @@ function shell(solid, ring, low_half, high_half, hex) {
   const left = ring.map(([a, u]) => /** @type {Point} */ ([a, half(u), u]));
   solid.face(right, hex);
   solid.face([...left].reverse(), hex);
-  for (let k = 1; k < ring.length; k++) {
-    solid.face([left[k - 1], left[k], right[k], right[k - 1]].reverse(), hex);
+  for (let k = 0; k < ring.length; k++) {
+    const next = (k + 1) % ring.length;
+    solid.face([right[k], left[k], left[next], right[next]], hex);
   }
-  solid.face([left[ring.length - 1], left[0], right[0], right[ring.length - 1]].reverse(), hex);
 }
 
 /** @param {MeshBuilder} solid */

@@ -19,16 +19,19 @@ export class Interior {
   constructor(side) {
     this.group = new Group();
     this.materials = {
-      dash: new MeshBasicMaterial({ color: 0x1d1f22, fog: false }),
-      edge: new MeshBasicMaterial({ color: 0x2c2f33, fog: false }),
-      bonnet: new MeshBasicMaterial({ vertexColors: true, fog: false }),
-      wheel: new MeshBasicMaterial({ color: 0x141517, fog: false }),
+      dash: new MeshBasicMaterial({ color: 0x1d1f22 }),
+      edge: new MeshBasicMaterial({ color: 0x2c2f33 }),
+      bonnet: new MeshBasicMaterial({ vertexColors: true }),
+      wheel: new MeshBasicMaterial({ color: 0x141517 }),
     };
     this.wheel = new Group();
     this.#steeringWheel();
     this.#bonnet(side);
     this.#dashboard();
     this.group.add(this.wheel);
+    // First, so that nothing is painted behind it in vain.
+    this.group.renderOrder = -1;
+    this.group.traverse((part) => (part.renderOrder = -1));
   }
 
   /** @param {number} curvature_per_m of the path that is driven */
@@ -61,7 +64,7 @@ export class Interior {
   #bonnet(side) {
     const middle = 0.36 * side;
     const [points, colors] = [/** @type {number[][]} */ ([]), /** @type {number[]} */ ([])];
-    const rows = [[-1.05, -0.42, 0.78], [-1.45, -0.36, 0.8], [-1.75, -0.46, 0.74]];
+    const rows = [[-1.0, -0.45, 0.8], [-1.3, -0.405, 0.82], [-1.6, -0.43, 0.79], [-1.8, -0.52, 0.74]];
     const across = 10;
     const at = (/** @type {number[]} */ [z, y, half], /** @type {number} */ k) => {
       const share = (2 * k) / across - 1;
@@ -71,8 +74,8 @@ export class Interior {
       for (let k = 0; k < across; k++) {
         const [a, b, c, d] = [at(rows[row - 1], k), at(rows[row - 1], k + 1), at(rows[row], k + 1), at(rows[row], k)];
         points.push(a, b, c, a, c, d);
-        const light = 0.1 + 0.045 * Math.sin((Math.PI * (k + 0.5)) / across) + (row === 1 ? 0.02 : 0.09);
-        for (let corner = 0; corner < 6; corner++) colors.push(light * 0.6, light * 0.75, light);
+        const light = 0.2 + 0.1 * Math.sin((Math.PI * (k + 0.5)) / across) + 0.06 * row;
+        for (let corner = 0; corner < 6; corner++) colors.push(light * 0.45, light * 0.72, light);
       }
     }
     const geometry = triangles(points);

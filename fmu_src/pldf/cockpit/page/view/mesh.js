@@ -1,37 +1,21 @@
 // Builds meshes of flat coloured faces, with day light already in their colours: one material, no
 // lights, few calls to draw.
-import {
-  BufferAttribute,
-  BufferGeometry,
-  Color,
-  Mesh,
-  MeshBasicMaterial,
-} from "../vendor/three.js";
+import { BufferAttribute, BufferGeometry, Mesh } from "../vendor/three.js";
+import { SOLID } from "./materials.js";
 
 /** @typedef {[number, number, number]} Point ahead, left, up of a frame (m) */
 /** @typedef {{x_m: number, y_m: number, z_m: number, heading_rad: number}} Frame in the world: east, north, up */
 /** @typedef {{x_m: number, y_m: number}} Origin the point of the world where a mesh has its zero */
 
 // Where the light comes from (three's axes: east, up, south), and how much from sun and sky.
-const SUN = normalized([0.45, 0.75, 0.5]);
-const SUN_SHARE = 0.75;
-const SKY_SHARE = 0.5;
+const SUN = normalized([-0.5, 0.7, 0.5]);
+const SUN_SHARE = 0.36;
+const SKY_SHARE = 0.84;
 
-/** @type {Map<number, [number, number, number]>} */
-const linear = new Map();
-
-/** @param {number} hex sRGB @returns {[number, number, number]} linear */
+/** @param {number} hex @returns {[number, number, number]} 0..1 */
 export function rgb(hex) {
-  let found = linear.get(hex);
-  if (!found) {
-    const { r, g, b } = new Color(hex);
-    found = [r, g, b];
-    linear.set(hex, found);
-  }
-  return found;
+  return [(hex >> 16) / 255, ((hex >> 8) & 255) / 255, (hex & 255) / 255];
 }
-
-export const SOLID = new MeshBasicMaterial({ vertexColors: true });
 
 /** @param {Origin} origin @param {number} x_m @param {number} y_m @param {number} z_m */
 export function toScene(origin, x_m, y_m, z_m) {
@@ -144,7 +128,7 @@ export function lightOn(a, b, c) {
 /** @param {Point} normal of length 1, in the scene */
 export function lightAlong([x, y, z]) {
   const sun = Math.max(x * SUN[0] + y * SUN[1] + z * SUN[2], 0);
-  return SUN_SHARE * sun + SKY_SHARE * (0.65 + 0.35 * y);
+  return SUN_SHARE * sun + SKY_SHARE * (0.8 + 0.2 * y);
 }
 
 /** @param {Point} vector @returns {Point} */

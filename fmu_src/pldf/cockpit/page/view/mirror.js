@@ -6,10 +6,10 @@ import {
   OrthographicCamera,
   PerspectiveCamera,
   PlaneGeometry,
-  SRGBColorSpace,
   Scene,
   WebGLRenderTarget,
 } from "../vendor/three.js";
+import { pictureOf } from "./materials.js";
 
 const WIDTH_PX = 384;
 const HEIGHT_PX = 96;
@@ -21,13 +21,12 @@ const FRAME_SHARE = 0.05;
 export class Mirror {
   constructor() {
     this.target = new WebGLRenderTarget(WIDTH_PX, HEIGHT_PX, { minFilter: LinearFilter });
-    this.target.texture.colorSpace = SRGBColorSpace;
     this.camera = new PerspectiveCamera(FOV_DEG, WIDTH_PX / HEIGHT_PX, 2.5, SIGHT_M);
     this.camera.rotation.order = "YXZ";
     this.lens = new OrthographicCamera(0, 1, 1, 0, -1, 1);
     this.scene = new Scene();
-    this.glass = new Mesh(flipped(), new MeshBasicMaterial({ map: this.target.texture, fog: false }));
-    this.frame = new Mesh(new PlaneGeometry(1, 1), new MeshBasicMaterial({ color: 0x15171a, fog: false }));
+    this.glass = new Mesh(flipped(), pictureOf(this.target.texture));
+    this.frame = new Mesh(new PlaneGeometry(1, 1), new MeshBasicMaterial({ color: 0x15171a }));
     this.glass.position.z = 0.1;
     this.scene.add(this.frame, this.glass);
   }

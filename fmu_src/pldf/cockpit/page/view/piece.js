@@ -2,34 +2,35 @@
 import { Group } from "../vendor/three.js";
 import { guardRail, lamp, pier, railing, reflectorPosts, standAt } from "./along.js";
 import { RIVER_BELOW_M, riverBend } from "./ground.js";
+import { paintLines } from "./lines.js";
 import { MeshBuilder } from "./mesh.js";
 import { KERB_M, PAVEMENT_M, beyondEdge } from "./profile.js";
 import { grow, vergeAt } from "./scenery.js";
 import { putUp, putUpBoard } from "./signs.js";
 import { Strips, placesBetween } from "./strips.js";
-import { DASH_PERIOD_M } from "./textures.js";
+import { ASPHALT_M, GRASS_M } from "./textures.js";
 
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
 /** @typedef {import("./along.js").Site} Site */
-/** @typedef {import("./textures.js").Marking} Marking */
+/** @typedef {import("./lines.js").Marking} Marking */
 /** @typedef {import("../vendor/three.js").Material} Material */
+/** @typedef {import("../vendor/three.js").ShaderMaterial} ShaderMaterial */
 /** @typedef {import("../vendor/three.js").Mesh} Mesh */
 /**
  * What all pieces of a road have in common.
  * @typedef {object} Kit
  * @property {RoadModel} road
- * @property {import("./textures.js").CrossSection} section
+ * @property {import("./profile.js").CrossSection} section
  * @property {import("./plan.js").Furniture} furniture
  * @property {import("./ground.js").Ground} ground
- * @property {Record<Marking, Material>} asphalt
- * @property {Material} grass
+ * @property {ShaderMaterial} asphalt
+ * @property {ShaderMaterial} grass
  * @property {Material} paving
  */
 
 export const PIECE_M = 100;
 const STEP_M = 5;
 const LAMP_M = 30;
-const GRASS_PICTURE_M = 5;
 const VERGE = 0x82aa4c;
 const DITCH = 0x6f9844;
 const PAVING = 0xb4b2ac;
@@ -49,7 +50,7 @@ export function piece(kit, k, detailed) {
   const site = { road, section, solid };
   const group = new Group();
   const put = (/** @type {Mesh | null} */ mesh) => mesh && group.add(mesh);
-  surface(kit, origin, from_m, to_m).forEach(put);
+  surface(kit, solid, from_m, to_m).forEach(put);
   furniture(kit, site, from_m, to_m).forEach(put);
   bridges(kit, site, from_m, to_m);
   const middle = road.at((from_m + to_m) / 2);
@@ -59,43 +60,35 @@ export function piece(kit, k, detailed) {
   return { group, origin };
 }
 
-/** @param {Kit} kit @param {import("./mesh.js").Origin} origin @param {number} from_m @param {number} to_m */
-function surface(kit, origin, from_m, to_m) {
+/** @param {Kit} kit @param {MeshBuilder} solid @param {number} from_m @param {number} to_m */
+function surface(kit, solid, from_m, to_m) {
   const { road, section } = kit;
-  /** @type {Record<Marking, Strips>} */
-  const asphalt = {
-    dashed: new Strips(road, origin),
-    solid: new Strips(road, origin),
-    town: new Strips(road, origin),
-  };
-  const [grass, paving] = [new Strips(road, origin), new Strips(road, origin)];
-  const cuts = [from_m, ...bounds(road).filter((s) => s > from_m && s < to_m), to_m];
+  const { origin } = solid;
+  const [asphalt, grass, paving] = [0, 1, 2].map(() => new Strips(road, origin));
+  const cuts = cutsBetween(road, from_m, to_m);
   const left = { left_m: section.left_m, up_m: 0, u: 0 };
   const right = { left_m: -section.right_m, up_m: 0, u: 1 };
   for (let k = 1; k < cuts.length; k++) {
     const places = placesBetween(cuts[k - 1], cuts[k], STEP_M);
     const middle = (cuts[k - 1] + cuts[k]) / 2;
-    asphalt[markingAt(road, middle)].add(places, left, right, 0xffffff, (s) => s / DASH_PERIOD_M);
+    asphalt.add(places, left, right, 0xe4e6ea, (s) => s / ASPHALT_M);
+    paintLines(solid, road, section, markingAt(road, middle), cuts[k - 1], cuts[k]);
     if (road.stretchAt("bridge", middle)) pavement(paving, kit, places, 1.5, DECK);
     else if (road.stretchAt("village", middle)) {
       pavement(paving, kit, places, PAVEMENT_M, PAVING);
       verges(grass, kit, places, PAVEMENT_M, KERB_M);
     } else verges(grass, kit, places, 0, 0);
   }
-  return [
-    ...Object.entries(asphalt).map(([kind, strips]) =>
-      strips.mesh(kit.asphalt[/** @type {Marking} */ (kind)]),
-    ),
-    grass.mesh(kit.grass),
-    paving.mesh(kit.paving),
-  ];
+  return [asphalt.mesh(kit.asphalt), grass.mesh(kit.grass), paving.mesh(kit.paving)];
 }
 
-/** Where the cross-section changes. @param {RoadModel} road @returns {number[]} in order */
-function bounds(road) {
+/** Where the cross-section or the lines may change. @param {RoadModel} road @param {number} from_m @param {number} to_m @returns {number[]} in order, with both ends */
+function cutsBetween(road, from_m, to_m) {
   const spans = road.stretches.filter((each) => each.kind === "bridge" || each.kind === "village");
   const ends = spans.flatMap((each) => [each.from_m, each.to_m]);
-  return ends.sort((a, b) => a - b);
+  const middle = (from_m + to_m) / 2;
+  const inside = [...ends, middle].filter((s_m) => s_m > from_m && s_m < to_m);
+  return [from_m, ...new Set(inside.sort((a, b) => a - b)), to_m];
 }
 
 /** @param {RoadModel} road @param {number} s_m @returns {Marking} */
@@ -114,10 +107,10 @@ function verges(grass, kit, places, from_m, up_m) {
         const out_m = outs[i];
         const drop = i === 3 ? -1.7 : vergeAt(out_m);
         const left_m = beyondEdge(kit.section, left, out_m);
-        return { left_m, up_m: i === 0 ? up_m : drop, u: left_m / GRASS_PICTURE_M };
+        return { left_m, up_m: i === 0 ? up_m : drop, u: left_m / GRASS_M };
       });
       const edges = left ? [outer, inner] : [inner, outer];
-      grass.add(places, edges[0], edges[1], k === 2 ? DITCH : VERGE, (s) => s / GRASS_PICTURE_M);
+      grass.add(places, edges[0], edges[1], k === 2 ? DITCH : VERGE, (s) => s / GRASS_M);
     }
   }
 }
@@ -151,7 +144,7 @@ function furniture({ furniture: plan, road, section }, site, from_m, to_m) {
     if (road.stretchAt("village", s_m)) lamp(site, s_m, left);
   }
   const signs = plan.signs.filter(here).map((sign) => {
-    const out = sign.kind.startsWith("town") ? 2.6 : 1.6;
+    const out = sign.kind.startsWith("town") ? 3.2 : 1.6;
     return putUp(standAt(site, sign.s_m, beyondEdge(section, driven, out)), sign);
   });
   const boards = plan.boards.filter(here).map((board) => {

@@ -66,7 +66,7 @@ export function fir(solid, seed, detailed, size = 1) {
 
 /** @param {MeshBuilder} solid @param {number} seed @param {boolean} detailed */
 export function bush(solid, seed, detailed) {
-  const radius = between(0.5, 1.3, chance(seed, 1));
+  const radius = between(0.4, 1, chance(seed, 1));
   const hex = BUSH[Math.floor(chance(seed, 3) * BUSH.length)];
   if (detailed) crown(solid, [0, 0, radius * 0.5], [radius, radius * 0.9, radius * 0.8], hex, seed);
   else solid.cone([0, 0, 0], radius, radius * 0.4, radius, 4, hex);
@@ -75,7 +75,7 @@ export function bush(solid, seed, detailed) {
 /** High grass beside the road. @param {MeshBuilder} solid @param {number} seed */
 export function tuft(solid, seed) {
   const height = between(0.2, 0.5, chance(seed, 1));
-  const hex = [0x86a850, 0x7a9c44, 0xa8aa62][Math.floor(chance(seed, 2) * 3)];
+  const hex = [0x7fa84c, 0x6f9a44, 0x93a952][Math.floor(chance(seed, 2) * 3)];
   for (let k = 0; k < 3; k++) {
     const turn = 1.6 * k + chance(seed, k, 3);
     const [c, s] = [Math.cos(turn), Math.sin(turn)];
@@ -85,8 +85,8 @@ export function tuft(solid, seed) {
       [0.16 * s, -0.16 * c, -0.05],
       [0.12 * c, 0.12 * s, height],
     ];
-    solid.face(blade, hex, 1.35);
-    solid.face([...blade].reverse(), hex, 1.35);
+    solid.face(blade, hex, 1.2);
+    solid.face([...blade].reverse(), hex, 1.2);
   }
 }
 

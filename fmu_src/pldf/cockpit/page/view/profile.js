@@ -1,7 +1,8 @@
 // How wide the road is, and what lies beside it.
 
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
-/** @typedef {import("./textures.js").CrossSection} CrossSection */
+/** @typedef {{at_m: number, kind: "edge" | "middle" | "lane"}} Line to the left of the road's line */
+/** @typedef {{left_m: number, right_m: number, lines: Line[]}} CrossSection how far the asphalt goes to both sides */
 
 export const MARGIN_M = 0.5; // asphalt beyond the edge line
 export const PAVEMENT_M = 2;
@@ -13,7 +14,7 @@ export function crossSection(road) {
   const along = road.lanes_right * road.lane_width_m;
   const against = road.lanes_left * road.lane_width_m;
   const [right, left] = road.side > 0 ? [along, against] : [against, along];
-  /** @type {CrossSection["lines"]} */
+  /** @type {Line[]} */
   const lines = [
     { at_m: left, kind: "edge" },
     { at_m: -right, kind: "edge" },

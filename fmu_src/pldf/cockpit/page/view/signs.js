@@ -1,10 +1,6 @@
 // Signs on posts.
-import {
-  CircleGeometry,
-  Mesh,
-  MeshBasicMaterial,
-  PlaneGeometry,
-} from "../vendor/three.js";
+import { CircleGeometry, Mesh, PlaneGeometry } from "../vendor/three.js";
+import { plateOf } from "./materials.js";
 import { toScene } from "./mesh.js";
 import { canvas, textureOf } from "./textures.js";
 
@@ -21,7 +17,7 @@ const YELLOW = "#ffd100";
 const POST_HEX = 0x9aa0a4;
 const BACK_HEX = 0x8a9094;
 
-/** @type {Map<string, MeshBasicMaterial>} */
+/** @type {Map<string, import("../vendor/three.js").ShaderMaterial>} */
 const materials = new Map();
 
 /**
@@ -100,7 +96,7 @@ function painted(key, paint) {
     pen.textBaseline = "middle";
     paint(pen, size);
     const map = textureOf(made, { anisotropy: 4 });
-    found = new MeshBasicMaterial({ map, alphaTest: 0.5, fog: true });
+    found = plateOf(map);
     materials.set(key, found);
   }
   return found;

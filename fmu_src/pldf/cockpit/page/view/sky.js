@@ -1,49 +1,54 @@
 // The sky with far hills: a picture around everything, so far away that it never comes nearer.
-import { BackSide, Mesh, MeshBasicMaterial, SphereGeometry } from "../vendor/three.js";
+import { LinearFilter, Mesh, SphereGeometry } from "../vendor/three.js";
 import { chance, hills } from "./chance.js";
+import { HAZE, pictureOf } from "./materials.js";
 import { canvas, textureOf } from "./textures.js";
 
-/** colour of the haze in which far things are lost */
-export const HAZE = "#cfdde6";
-const WIDTH = 2048;
+const WIDTH = 4096;
 const HEIGHT = 1024;
-const HORIZON = HEIGHT / 2;
+// The picture reaches from below the horizon to so far above it; the rest is plain.
+const BELOW_DEG = 8;
+const ABOVE_DEG = 62;
+const HORIZON = (HEIGHT * ABOVE_DEG) / (ABOVE_DEG + BELOW_DEG);
+export const ZENITH = "#3f7fc0";
 const RADIUS_M = 2000;
 
 export function sky() {
   const { made, pen } = canvas(WIDTH, HEIGHT);
   const air = pen.createLinearGradient(0, 0, 0, HORIZON);
-  air.addColorStop(0, "#3f7fc0");
-  air.addColorStop(0.55, "#7db1dd");
-  air.addColorStop(0.88, "#bdd7ea");
+  air.addColorStop(0, ZENITH);
+  air.addColorStop(0.5, "#74abdb");
+  air.addColorStop(0.85, "#b4d3e8");
   air.addColorStop(1, HAZE);
   pen.fillStyle = air;
   pen.fillRect(0, 0, WIDTH, HORIZON);
   pen.fillStyle = HAZE;
   pen.fillRect(0, HORIZON, WIDTH, HORIZON);
   clouds(pen);
-  ridge(pen, 46, 5, "#a9c0d0", 1);
-  ridge(pen, 30, 8, "#93b0b8", 2);
-  ridge(pen, 17, 13, "#8aab9c", 3);
-  const material = new MeshBasicMaterial({
-    map: textureOf(made),
-    side: BackSide,
-    fog: false,
-    depthWrite: false,
-  });
-  const dome = new Mesh(new SphereGeometry(RADIUS_M, 32, 24), material);
-  dome.renderOrder = -1;
+  ridge(pen, 95, 5, "#93afc4", 1);
+  ridge(pen, 62, 8, "#7d9fae", 2);
+  ridge(pen, 36, 13, "#749a8c", 3);
+  const picture = textureOf(made);
+  picture.generateMipmaps = false;
+  picture.minFilter = LinearFilter;
+  const dome = new Mesh(band(), pictureOf(picture, true));
+  dome.renderOrder = 2; // only where nothing is before it
   dome.frustumCulled = false;
   return dome;
 }
 
+function band() {
+  const [low, high] = [90 + BELOW_DEG, 90 - ABOVE_DEG].map((degrees) => (degrees * Math.PI) / 180);
+  return new SphereGeometry(RADIUS_M, 48, 16, 0, 2 * Math.PI, high, low - high);
+}
+
 /** @param {CanvasRenderingContext2D} pen */
 function clouds(pen) {
-  for (let k = 0; k < 46; k++) {
+  for (let k = 0; k < 40; k++) {
     const x = WIDTH * chance(k, 51);
-    const y = HORIZON * (0.5 + 0.43 * chance(k, 52));
-    const size = 7 + 75 * (1 - y / HORIZON) * (0.5 + chance(k, 53));
-    for (let puff = 0; puff < 22; puff++) {
+    const y = HORIZON * (0.35 + 0.56 * chance(k, 52));
+    const size = 16 + 130 * (1 - y / HORIZON) * (0.5 + chance(k, 53));
+    for (let puff = 0; puff < 26; puff++) {
       const px = x + size * 4.5 * (chance(k, puff, 54) - 0.5);
       const py = y - size * 0.5 * chance(k, puff, 55) + size * 0.2;
       blob(pen, px, py, size * (0.35 + 0.6 * chance(k, puff, 56)));
@@ -64,7 +69,10 @@ function blob(pen, x, y, radius) {
 
 /** @param {CanvasRenderingContext2D} pen @param {number} height @param {number} waves @param {string} color @param {number} seed */
 function ridge(pen, height, waves, color, seed) {
-  pen.fillStyle = color;
+  const misty = pen.createLinearGradient(0, HORIZON - height, 0, HORIZON);
+  misty.addColorStop(0, color);
+  misty.addColorStop(1, HAZE);
+  pen.fillStyle = misty;
   pen.beginPath();
   pen.moveTo(0, HORIZON + 6);
   for (let x = 0; x <= WIDTH; x += 4) {

@@ -2,11 +2,11 @@
 import { BufferAttribute, BufferGeometry, Mesh } from "../vendor/three.js";
 import { chance, hills } from "./chance.js";
 import { lightOn, rgb, toScene } from "./mesh.js";
+import { GRASS_M } from "./textures.js";
 
 /** @typedef {import("./ground.js").Ground} Ground */
 
 export const TILE_M = 200;
-const GRASS_PICTURE_M = 5;
 const FINE_CELLS = 16;
 const COARSE_CELLS = 5;
 const COARSE_BELOW_M = 0.6; // far away the land must not come through the road
@@ -37,7 +37,7 @@ export function tile(ground, i, j, fine, material) {
     for (const corner of face) {
       positions.set(corner.at, 3 * at);
       for (let k = 0; k < 3; k++) colors[3 * at + k] = color[k] * light;
-      uvs.set([corner.at[0] / GRASS_PICTURE_M, corner.at[2] / GRASS_PICTURE_M], 2 * at);
+      uvs.set([corner.at[0] / GRASS_M, corner.at[2] / GRASS_M], 2 * at);
       at++;
     }
   };
@@ -55,6 +55,7 @@ export function tile(ground, i, j, fine, material) {
   geometry.setAttribute("color", new BufferAttribute(colors, 3));
   geometry.setAttribute("uv", new BufferAttribute(uvs, 2));
   const mesh = new Mesh(geometry, material);
+  mesh.renderOrder = 1; // after what stands on it: nothing is painted twice
   return { mesh, origin };
 }
 

@@ -1,21 +1,16 @@
-// Pictures painted once when the view begins: asphalt with its lines, grass, sky.
-import {
-  CanvasTexture,
-  ClampToEdgeWrapping,
-  RepeatWrapping,
-  SRGBColorSpace,
-} from "../vendor/three.js";
+// Pictures painted once when the view begins: asphalt and grass.
+import { CanvasTexture, ClampToEdgeWrapping, RepeatWrapping } from "../vendor/three.js";
 import { chance } from "./chance.js";
 
-/** @typedef {"dashed" | "solid" | "town"} Marking of the middle: overtaking or not; none at the edges */
-/** @typedef {{left_m: number, right_m: number, lines: {at_m: number, kind: "edge" | "middle" | "lane"}[]}} CrossSection */
+/** @typedef {import("./profile.js").CrossSection} CrossSection */
 
-/** a dash of the middle line and the gap behind it; the picture of the road repeats so */
-export const DASH_PERIOD_M = 12;
-const DASH_M = 4;
-const LINE_M = 0.15;
-const WIDTH_PX = 512;
-const LENGTH_PX = 1024;
+/** so much of the road one picture shows, before it comes again */
+export const ASPHALT_M = 16;
+/** side of the land that one picture of grass covers */
+export const GRASS_M = 5;
+const ASPHALT_PX = [512, 1024];
+const GRASS_PX = 256;
+const GRAIN_PX = 128;
 
 /** @param {number} width @param {number} height */
 export function canvas(width, height) {
@@ -30,117 +25,106 @@ export function canvas(width, height) {
 /** @param {HTMLCanvasElement} picture */
 export function textureOf(picture, { repeat = false, anisotropy = 1 } = {}) {
   const texture = new CanvasTexture(picture);
-  texture.colorSpace = SRGBColorSpace;
   texture.anisotropy = anisotropy;
   texture.wrapS = texture.wrapT = repeat ? RepeatWrapping : ClampToEdgeWrapping;
   return texture;
 }
 
-/**
- * The road from edge to edge, 12 m of it.
- * @param {CrossSection} section @param {Marking} marking @param {number} anisotropy
- */
-export function roadTexture(section, marking, anisotropy) {
-  const { made, pen } = canvas(WIDTH_PX, LENGTH_PX);
-  const width_m = section.left_m + section.right_m;
-  const px = WIDTH_PX / width_m;
-  pen.fillStyle = "#66686a";
-  pen.fillRect(0, 0, WIDTH_PX, LENGTH_PX);
-  wheelTracks(pen, section, px);
-  grain(pen, WIDTH_PX, LENGTH_PX, 26, 3);
+/** The road from edge to edge, without its lines. @param {CrossSection} section @param {number} anisotropy */
+export function asphaltTexture(section, anisotropy) {
+  const [width, height] = ASPHALT_PX;
+  const { made, pen } = canvas(width, height);
+  pen.fillStyle = "#7b7d80";
+  pen.fillRect(0, 0, width, height);
+  const px = width / (section.left_m + section.right_m);
+  for (const at_m of wheelTracks(section)) track(pen, (section.left_m - at_m) * px, px);
   patches(pen);
-  for (const line of section.lines) {
-    if (line.kind === "edge" && marking === "town") continue;
-    const x = (section.left_m - line.at_m) * px;
-    paintLine(pen, x, px, line.kind === "edge" || (line.kind === "middle" && marking === "solid"));
-  }
+  cracks(pen);
+  pen.globalCompositeOperation = "overlay";
+  pen.fillStyle = pen.createPattern(grain(0.55), "repeat") ?? "#808080";
+  pen.fillRect(0, 0, width, height);
   return textureOf(made, { repeat: true, anisotropy });
 }
 
-/** @param {CanvasRenderingContext2D} pen @param {number} x @param {number} px per m @param {boolean} solid */
-function paintLine(pen, x, px, solid) {
-  const length = solid ? LENGTH_PX : (LENGTH_PX * DASH_M) / DASH_PERIOD_M;
-  const width = LINE_M * px;
-  pen.fillStyle = "#e9e9e4";
-  pen.fillRect(x - width / 2, 0, width, length);
-  for (let k = 0; k < length / 3; k++) {
-    pen.fillStyle = `rgba(90,92,94,${0.1 + 0.35 * chance(k, 9, Math.round(x))})`;
-    pen.fillRect(x - width / 2 + width * chance(k, 1), length * chance(k, 2), 2, 2);
-  }
+/** Where wheels run: beside the middle of each lane. @param {CrossSection} section @returns {number[]} */
+function wheelTracks({ lines }) {
+  const edges = lines.map((line) => line.at_m).sort((a, b) => a - b);
+  const middles = edges.slice(1).map((at, k) => (at + edges[k]) / 2);
+  return middles.flatMap((at) => [at - 0.75, at + 0.75]);
 }
 
-/** Where wheels run the road is darker. @param {CanvasRenderingContext2D} pen @param {CrossSection} section @param {number} px */
-function wheelTracks(pen, section, px) {
-  const sides = section.lines.map((line) => line.at_m).sort((a, b) => a - b);
-  for (let k = 1; k < sides.length; k++) {
-    for (const off_m of [-0.75, 0.75]) {
-      const x = (section.left_m - (sides[k] + sides[k - 1]) / 2 - off_m) * px;
-      const track = pen.createLinearGradient(x - 0.5 * px, 0, x + 0.5 * px, 0);
-      track.addColorStop(0, "rgba(40,41,44,0)");
-      track.addColorStop(0.5, "rgba(40,41,44,0.3)");
-      track.addColorStop(1, "rgba(40,41,44,0)");
-      pen.fillStyle = track;
-      pen.fillRect(x - 0.5 * px, 0, px, LENGTH_PX);
-    }
-  }
+/** @param {CanvasRenderingContext2D} pen @param {number} x @param {number} px per m */
+function track(pen, x, px) {
+  const dark = pen.createLinearGradient(x - 0.55 * px, 0, x + 0.55 * px, 0);
+  dark.addColorStop(0, "rgba(48,49,52,0)");
+  dark.addColorStop(0.5, "rgba(48,49,52,0.32)");
+  dark.addColorStop(1, "rgba(48,49,52,0)");
+  pen.fillStyle = dark;
+  pen.fillRect(x - 0.55 * px, 0, 1.1 * px, ASPHALT_PX[1]);
 }
 
-/** Mended places and joints: something to see of one's own speed. @param {CanvasRenderingContext2D} pen */
+/** Mended places: something to see of one's own speed. @param {CanvasRenderingContext2D} pen */
 function patches(pen) {
-  for (let k = 0; k < 7; k++) {
-    pen.fillStyle = `rgba(${k % 2 ? "30,31,33" : "140,142,142"},${0.06 + 0.12 * chance(k, 21)})`;
-    const [x, y] = [WIDTH_PX * chance(k, 22), LENGTH_PX * chance(k, 23)];
-    pen.fillRect(x, y, 20 + 110 * chance(k, 24), 14 + 80 * chance(k, 25));
+  const [width, height] = ASPHALT_PX;
+  for (let k = 0; k < 9; k++) {
+    pen.fillStyle = `rgba(${k % 2 ? "40,41,44" : "165,166,166"},${0.1 + 0.14 * chance(k, 21)})`;
+    const [x, y] = [width * chance(k, 22), height * chance(k, 23)];
+    pen.fillRect(x, y, 20 + 110 * chance(k, 24), 14 + 60 * chance(k, 25));
   }
-  pen.strokeStyle = "rgba(25,26,28,0.55)";
-  pen.lineWidth = 1.5;
-  for (let k = 0; k < 5; k++) {
+}
+
+/** @param {CanvasRenderingContext2D} pen */
+function cracks(pen) {
+  const [width, height] = ASPHALT_PX;
+  pen.strokeStyle = "rgba(30,31,33,0.6)";
+  pen.lineWidth = 2;
+  for (let k = 0; k < 6; k++) {
     pen.beginPath();
-    let [x, y] = [WIDTH_PX * chance(k, 31), LENGTH_PX * chance(k, 32)];
+    let [x, y] = [width * chance(k, 31), height * chance(k, 32)];
     pen.moveTo(x, y);
     for (let i = 0; i < 8; i++) {
       x += 34 * (chance(k, i, 33) - 0.5);
-      y += 26 * chance(k, i, 34);
+      y += 22 * chance(k, i, 34);
       pen.lineTo(x, y);
     }
     pen.stroke();
   }
 }
 
-/** @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height @param {number} strength @param {number} size */
-function grain(pen, width, height, strength, size) {
-  const image = pen.getImageData(0, 0, width, height);
-  const { data } = image;
-  for (let y = 0; y < height; y++) {
-    for (let x = 0; x < width; x++) {
-      const fine = chance(x, y, 5) - 0.5;
-      const coarse = chance(Math.floor(x / size), Math.floor(y / size), 6) - 0.5;
-      const change = strength * (fine + coarse);
-      const at = 4 * (y * width + x);
-      for (let k = 0; k < 3; k++) data[at + k] += change;
-    }
-  }
-  pen.putImageData(image, 0, 0);
-}
-
 /** Light and dark of grass, to be multiplied with its colour. @param {number} anisotropy */
 export function grassTexture(anisotropy) {
-  const size = 256;
-  const { made, pen } = canvas(size, size);
-  pen.fillStyle = "#d0d0d0";
-  pen.fillRect(0, 0, size, size);
-  for (let k = 0; k < 2600; k++) {
-    const tone = Math.round(120 + 135 * chance(k, 41));
-    pen.strokeStyle = `rgba(${tone},${tone},${Math.round(tone * 0.8)},0.4)`;
-    const [x, y] = [size * chance(k, 42), size * chance(k, 43)];
-    const [dx, dy] = [8 * (chance(k, 44) - 0.5), 4 + 8 * chance(k, 45)];
-    for (const [ox, oy] of [[0, 0], [size, 0], [0, size], [-size, 0], [0, -size]]) {
-      pen.beginPath();
-      pen.moveTo(x + ox, y + oy);
-      pen.lineTo(x + dx + ox, y - dy + oy);
-      pen.stroke();
-    }
+  const { made, pen } = canvas(GRASS_PX, GRASS_PX);
+  pen.fillStyle = "#d8d8d4";
+  pen.fillRect(0, 0, GRASS_PX, GRASS_PX);
+  for (let k = 0; k < 1800; k++) {
+    const tone = Math.round(130 + 125 * chance(k, 41));
+    pen.strokeStyle = `rgba(${tone},${tone},${Math.round(tone * 0.8)},0.45)`;
+    const [x, y] = [GRASS_PX * chance(k, 42), GRASS_PX * chance(k, 43)];
+    blade(pen, x, y, 8 * (chance(k, 44) - 0.5), 4 + 8 * chance(k, 45));
   }
-  grain(pen, size, size, 20, 2);
   return textureOf(made, { repeat: true, anisotropy });
+}
+
+/** Also where the picture goes on. @param {CanvasRenderingContext2D} pen @param {number} x @param {number} y @param {number} dx @param {number} dy */
+function blade(pen, x, y, dx, dy) {
+  pen.beginPath();
+  for (const [ox, oy] of [[0, 0], [GRASS_PX, 0], [0, GRASS_PX], [-GRASS_PX, 0]]) {
+    pen.moveTo(x + ox, y + oy);
+    pen.lineTo(x + dx + ox, y - dy + oy);
+  }
+  pen.stroke();
+}
+
+/** Grey of every pixel by chance. @param {number} strength */
+function grain(strength) {
+  const { made, pen } = canvas(GRAIN_PX, GRAIN_PX);
+  const image = pen.getImageData(0, 0, GRAIN_PX, GRAIN_PX);
+  for (let k = 0; k < GRAIN_PX * GRAIN_PX; k++) {
+    const [x, y] = [k % GRAIN_PX, Math.floor(k / GRAIN_PX)];
+    const coarse = chance(x >> 2, y >> 2, 6) - 0.5;
+    const tone = 128 + 127 * strength * (chance(k, 5) - 0.5 + coarse);
+    image.data.set([tone, tone, tone, 255], 4 * k);
+  }
+  pen.putImageData(image, 0, 0);
+  return made;
 }

@@ -1,12 +1,13 @@
 // What the driver sees: the room's front door.
-import { Fog, PerspectiveCamera, Scene, WebGLRenderer } from "../vendor/three.js";
+import { Color, PerspectiveCamera, Scene, WebGLRenderer } from "../vendor/three.js";
 import { CAR_LENGTH_M, car } from "./car.js";
 import { look, setLens } from "./eye.js";
 import { Interior } from "./interior.js";
+import { SIGHT_M } from "./materials.js";
 import { Mirror } from "./mirror.js";
 import { Sharpness, isSoftware } from "./sharpness.js";
-import { HAZE, sky } from "./sky.js";
-import { SIGHT_M, World } from "./world.js";
+import { ZENITH, sky } from "./sky.js";
+import { World } from "./world.js";
 
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
 /** @typedef {import("./eye.js").CameraName} CameraName */
@@ -20,7 +21,6 @@ import { SIGHT_M, World } from "./world.js";
  */
 
 const NEAR_M = 0.3;
-const CLEAR_M = 250; // the haze begins
 const OWN_PAINT = 0x2d5f8f;
 const LEAD_PAINT = 0xb9402f;
 
@@ -40,9 +40,9 @@ export class View {
     this.sharpness = new Sharpness(software ? 1 : Math.min(globalThis.devicePixelRatio || 1, 2));
     this.lens = new PerspectiveCamera(50, 1, NEAR_M, 2.2 * SIGHT_M);
     this.scene = new Scene();
-    this.scene.fog = new Fog(HAZE, CLEAR_M, SIGHT_M);
+    this.scene.background = new Color().setStyle(ZENITH, "srgb-linear");
     this.sky = sky();
-    this.world = new World(road, software ? 4 : 8);
+    this.world = new World(road, software ? 1 : 8);
     this.own = car(OWN_PAINT);
     this.ahead = car(LEAD_PAINT);
     this.interior = new Interior(road.side);

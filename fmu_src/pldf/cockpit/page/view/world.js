@@ -1,18 +1,17 @@
 // The road and the land around the driver: built piece by piece before they are seen.
-import { Group, Mesh, MeshBasicMaterial } from "../vendor/three.js";
+import { Group, Mesh } from "../vendor/three.js";
 import { Ground } from "./ground.js";
+import { SIGHT_M, SOLID, roadOf, surfaceOf } from "./materials.js";
 import { PIECE_M, piece } from "./piece.js";
 import { furnitureOf } from "./plan.js";
 import { crossSection } from "./profile.js";
 import { TILE_M, tile } from "./terrain.js";
-import { grassTexture, roadTexture } from "./textures.js";
+import { asphaltTexture, grassTexture } from "./textures.js";
 
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
 /** @typedef {import("./mesh.js").Origin} Origin */
 /** @typedef {{group: Group | Mesh, origin: Origin, fine: boolean}} Built */
 
-/** so far one sees */
-export const SIGHT_M = 1200;
 const BEHIND_M = 300;
 const DETAIL_M = 220;
 const FINE_M = 420;
@@ -24,17 +23,15 @@ export class World {
     this.road = road;
     this.group = new Group();
     const section = crossSection(road);
-    const asphalt = (/** @type {import("./textures.js").Marking} */ marking) =>
-      new MeshBasicMaterial({ map: roadTexture(section, marking, anisotropy), vertexColors: true });
     /** @type {import("./piece.js").Kit} */
     this.kit = {
       road,
       section,
       furniture: furnitureOf(road),
       ground: new Ground(road),
-      asphalt: { dashed: asphalt("dashed"), solid: asphalt("solid"), town: asphalt("town") },
-      grass: new MeshBasicMaterial({ map: grassTexture(anisotropy), vertexColors: true }),
-      paving: new MeshBasicMaterial({ vertexColors: true }),
+      asphalt: roadOf(asphaltTexture(section, anisotropy)),
+      grass: surfaceOf(grassTexture(anisotropy)),
+      paving: SOLID,
     };
     /** @type {Map<string, Built>} */
     this.built = new Map();
@@ -68,8 +65,8 @@ export class World {
 
   dispose() {
     for (const [key, built] of this.built) this.#drop(key, built);
-    for (const material of [...Object.values(this.kit.asphalt), this.kit.grass, this.kit.paving]) {
-      /** @type {MeshBasicMaterial} */ (material).map?.dispose();
+    for (const material of [this.kit.asphalt, this.kit.grass]) {
+      material.uniforms.map.value.dispose();
       material.dispose();
     }
   }
