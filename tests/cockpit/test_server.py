@@ -120,7 +120,7 @@ def test_the_page_and_nothing_beside_it(asked: TestClient) -> None:
 
 def test_files_of_a_session(asked: TestClient, tmp_path: Path) -> None:
     address = f"{ROOT}/api/files/recordings/P07_A1.csv"
-    assert asked.get(address).status_code == 404
+    assert asked.get(address).status_code == 204
     written = asked.put(address, content=b"time_s\n0\n")
     assert written.status_code == 204
     read = asked.get(address)

@@ -125,8 +125,8 @@ class _Desk:
     async def read_file(self, request: Request) -> Response:
         path = request.path_params["path"]
         stored = await run_in_threadpool(self._folder.read, path)
-        if stored is None:
-            raise Refused(HTTPStatus.NOT_FOUND, f"{path}: there is no such file yet")
+        if stored is None:  # no error: a browser would write 404 into its console
+            return Response(status_code=HTTPStatus.NO_CONTENT)
         return Response(
             stored.data, media_type="application/octet-stream", headers={"etag": stored.mark}
         )

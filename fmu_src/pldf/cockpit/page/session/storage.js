@@ -43,7 +43,7 @@ export function serverStorage(base) {
  */
 async function fetched(url) {
   const response = await fetch(url, { cache: "no-store" });
-  if (response.status === 404) {
+  if (response.status === 204) {
     return { bytes: null, tag: null };
   }
   const bytes = new Uint8Array(await refused(response).arrayBuffer());
