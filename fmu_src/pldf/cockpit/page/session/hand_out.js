@@ -1,0 +1,59 @@
+// All data of the page as one zip, which `pldf analyse` reads.
+
+import { zipSync } from "../vendor/fflate.js";
+import { element } from "../dom.js";
+
+/** @typedef {import("./storage.js").Storage} Storage */
+/** @typedef {import("../types.js").Files} Files */
+
+/**
+ * @param {Storage} storage
+ * @returns {Promise<Files>} all files
+ */
+export async function allFiles(storage) {
+  /** @type {Files} */
+  const files = {};
+  for (const path of await storage.list("")) {
+    const bytes = await storage.read(path);
+    if (bytes) {
+      files[path] = bytes;
+    }
+  }
+  return files;
+}
+
+/**
+ * Return files as a zip; the same files give the same bytes.
+ * @param {Files} files
+ * @returns {Uint8Array}
+ */
+export function zipped(files) {
+  const first = new Date(1980, 0, 1);
+  return zipSync(files, { level: 6, mtime: first });
+}
+
+/**
+ * Let the browser save bytes as a file.
+ * @param {string} name
+ * @param {Uint8Array} bytes
+ */
+export function saveAs(name, bytes) {
+  const url = URL.createObjectURL(new Blob([/** @type {BlobPart} */ (bytes)]));
+  const link = /** @type {HTMLAnchorElement} */ (element("a", { href: url, download: name }));
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(url), 60_000); // browsers may still be reading it
+}
+
+/**
+ * Hand out all data.
+ * @param {Storage} storage
+ * @returns {Promise<number>} how many files there were
+ */
+export async function handOut(storage) {
+  const files = await allFiles(storage);
+  const count = Object.keys(files).length;
+  if (count) {
+    saveAs("pldf-cockpit.zip", zipped(files));
+  }
+  return count;
+}
