@@ -3,7 +3,7 @@
 import { moved, placeOf, stepsOf } from "./flow.js";
 import { choose, now, showPage } from "./app.js";
 import { element } from "../dom.js";
-import { keepRecord, publishProfiles, readRecord } from "./keeping.js";
+import { keepRecord, otherWithNumber, publishProfiles, readRecord } from "./keeping.js";
 import { newRecord, noted } from "./record.js";
 import { patiently } from "./patiently.js";
 import { screenOf } from "./guided_screens.js";
@@ -16,7 +16,7 @@ import { say } from "./words.js";
 /** @typedef {import("./participant.js").Participant} Participant */
 /** @typedef {import("./record.js").SessionRecord} SessionRecord */
 /** @typedef {import("../cluster/live.js").StatusMessage} StatusMessage */
-/** @typedef {import("./inputs.js").Inputs} Inputs */
+/** @typedef {import("../engine/inputs/inputs.js").Inputs} Inputs */
 
 /**
  * Lead one person through the session, from where the person is.
@@ -25,8 +25,9 @@ import { say } from "./words.js";
  */
 export async function guide(app, who) {
   const alone = await held(`pldf-cockpit session ${who.name}`);
-  if (!alone) {
-    showPage(app, say("other_tab"));
+  const other = alone && (await patiently(app, (storage) => otherWithNumber(storage, who)));
+  if (!alone || other) {
+    showPage(app, other ? say("pseudonym_taken", { other }) : say("other_tab"));
     return;
   }
   const session = await Session.open(app, who);

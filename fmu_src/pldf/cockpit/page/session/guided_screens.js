@@ -8,6 +8,7 @@ import { driveStep } from "./guided_drive.js";
 import { handOut } from "./hand_out.js";
 import { fromJson, toJson } from "./saved.js";
 import { noted, withAnswers } from "./record.js";
+import { progress } from "./progress.js";
 import { say } from "./words.js";
 
 /** @typedef {import("./flow.js").Event} Event */
@@ -38,13 +39,6 @@ export function screenOf(session) {
     case "thanks":
       return thanks(session);
   }
-}
-
-/** @param {Session} session */
-export function progress(session) {
-  const { place, steps } = session;
-  const values = { position: place.at + 1, of: steps.length };
-  return element("p", { class: "progress" }, say("progress", values));
 }
 
 /** @param {Session} session @returns {Promise<Ended>} */

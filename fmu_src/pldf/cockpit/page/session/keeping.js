@@ -1,12 +1,12 @@
 // What is stored when: each drive before the next begins, and the tables made of all sessions.
 
+import { inputsCsv } from "../engine/input_changes.js";
 import { answersTable, exclusionsTable, questionnaireTable, sessionSummary } from "./tables.js";
 import { jsonBytes, parseRecord } from "./record.js";
 
 /** @typedef {import("../types.js").Bundle} Bundle */
 /** @typedef {import("../types.js").DriveResult} DriveResult */
 /** @typedef {import("../types.js").Files} Files */
-/** @typedef {import("../types.js").InputChange} InputChange */
 /** @typedef {import("./record.js").Attempt} Attempt */
 /** @typedef {import("./record.js").SessionRecord} SessionRecord */
 /** @typedef {import("./storage.js").Storage} Storage */
@@ -43,6 +43,18 @@ export async function allRecords(storage) {
     }
   }
   return records;
+}
+
+/**
+ * Return who else has this person's number: they would share one profile.
+ * @param {Storage} storage
+ * @param {{name: string, driver_id: number}} who
+ * @returns {Promise<string | null>}
+ */
+export async function otherWithNumber(storage, { name, driver_id }) {
+  const records = await allRecords(storage);
+  const other = records.find((one) => one.driver_id === driver_id && one.participant !== name);
+  return other?.participant ?? null;
 }
 
 /**
@@ -90,7 +102,7 @@ async function keepTables(storage, bundle) {
 export async function keepDrive(storage, record, attempt, result) {
   const [path, inputs] = pathsOf(record, attempt, result.ending === "arrived");
   await storage.write(path, text.encode(result.recording));
-  await storage.write(inputs, text.encode(inputsTable(result.inputs)));
+  await storage.write(inputs, text.encode(inputsCsv(result.inputs)));
   if (attempt.kind === "drive" && result.ending === "arrived") {
     for (const [name, bytes] of Object.entries(result.profiles)) {
       await storage.write(`${learnedFolder(record.participant, attempt.name)}${name}`, bytes);
@@ -116,11 +128,6 @@ function pathsOf(record, attempt, arrived) {
   const number = record.attempts.filter((one) => one.name === attempt.name).length;
   const stopped = `sessions/${record.participant}/stopped/${attempt.name}_${number}`;
   return [`${stopped}.csv`, `${stopped}_inputs.csv`];
-}
-
-/** @param {InputChange[]} inputs */
-function inputsTable(inputs) {
-  return ["step,name,value\n", ...inputs.map((one) => `${one.step},${one.name},${one.value}\n`)].join("");
 }
 
 /**

@@ -28,10 +28,10 @@ export function serverStorage(base) {
     read: async (path) => (await fetched(address(path))).bytes,
     list: async (prefix) => {
       const response = await fetch(`${base}?prefix=${encodeURIComponent(prefix)}`);
-      return (await refused(response).json()).sort();
+      return (await (await accepted(response)).json()).sort();
     },
     write: async (path, bytes) => {
-      refused(await put(address(path), bytes, {}));
+      await accepted(await put(address(path), bytes, {}));
     },
     update: (path, change) => updated(address(path), change),
   };
@@ -46,7 +46,7 @@ async function fetched(url) {
   if (response.status === 204) {
     return { bytes: null, tag: null };
   }
-  const bytes = new Uint8Array(await refused(response).arrayBuffer());
+  const bytes = new Uint8Array(await (await accepted(response)).arrayBuffer());
   return { bytes, tag: response.headers.get("ETag") };
 }
 
@@ -63,7 +63,7 @@ async function updated(url, change) {
     }
     const response = await put(url, bytes, old.tag ? { "If-Match": old.tag } : { "If-None-Match": "*" });
     if (response.status !== 412) {
-      refused(response);
+      await accepted(response);
       return;
     }
   }
@@ -84,11 +84,12 @@ function put(url, bytes, headers) {
 }
 
 /** @param {Response} response */
-function refused(response) {
-  if (!response.ok) {
-    throw new Error(`${response.status} ${response.statusText} ${response.url}`);
+async function accepted(response) {
+  if (response.ok) {
+    return response;
   }
-  return response;
+  const told = await response.json().catch(() => ({})); // what is no JSON is not from our server
+  throw new Error(told.error ?? `${response.status} ${response.statusText}`);
 }
 
 /**

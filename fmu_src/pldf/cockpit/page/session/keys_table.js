@@ -1,0 +1,33 @@
+// Which key does what, to look at beside a drive.
+
+import { element } from "../dom.js";
+import { say } from "./drive_words.js";
+
+/** @type {[string[], Parameters<typeof say>[0]][]} the keys of engine/inputs/keyboard.js, and ours */
+const ROWS = [
+  [["↑", "W"], "key_gas"],
+  [["↓", "S"], "key_brake"],
+  [["←", "→"], "key_steer"],
+  [["R"], "key_resume"],
+  [["C"], "key_cancel"],
+  [["E", "+"], "key_faster"],
+  [["Q", "-"], "key_slower"],
+  [["P", "F", "U"], "key_teach"],
+  [["Esc"], "key_stop"],
+];
+
+/**
+ * @param {boolean} [steered] the person steers
+ * @returns {HTMLElement}
+ */
+export function keysTable(steered = true) {
+  const rows = ROWS.filter(([, word]) => steered || word !== "key_steer").map(([keys, word]) =>
+    element(
+      "tr",
+      {},
+      element("td", {}, ...keys.flatMap((key) => [element("kbd", {}, key), " "])),
+      element("td", {}, say(word)),
+    ),
+  );
+  return element("table", { class: "keys" }, element("caption", {}, say("keys_title")), ...rows);
+}
