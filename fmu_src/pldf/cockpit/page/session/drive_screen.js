@@ -97,11 +97,7 @@ class DriveScreen {
    * @param {Inputs} inputs
    */
   teaching(parent, inputs) {
-    return new Buttons(parent, (word, on) => {
-      if (on || word === "pause_learning") {
-        inputs.keyboard.push(word);
-      }
-    });
+    return new Buttons(parent, (word) => inputs.keyboard.push(word));
   }
 
   /** The person wants to stop: the car stands still at once, then it is asked why. */

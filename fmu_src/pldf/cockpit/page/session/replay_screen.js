@@ -117,7 +117,7 @@ class ReplayScreen {
   /** Profiles of another road. */
   doubts() {
     return this.profiles
-      .filter(({ profile }) => profile.route_key !== this.app.road.key)
+      .filter(({ profile }) => profile.route !== this.app.road.key)
       .map(({ name }) => element("p", { class: "notice" }, say("road_differs", { name })));
   }
 

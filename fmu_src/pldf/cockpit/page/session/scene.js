@@ -28,8 +28,8 @@ export class Scene {
    * @param {Settings} settings
    */
   set(settings) {
+    this.view.options.mirror = settings.mirror;
     this.view.camera = settings.camera;
-    this.view.mirror = settings.mirror;
     if (settings.sound !== (this.sound !== null)) {
       this.sound?.dispose();
       this.sound = settings.sound ? new Sound() : null;

@@ -23,23 +23,31 @@ const FILES = "files";
 export function serverStorage(base) {
   /** @param {string} path */
   const address = (path) => `${base}${path.split("/").map(encodeURIComponent).join("/")}`;
+  /** @type {Storage["list"]} */
+  const list = async (prefix) => {
+    const response = await fetch(`${base}?prefix=${encodeURIComponent(prefix)}`, { cache: "no-store" });
+    return (await (await accepted(response)).json()).sort();
+  };
+  // Asking for a file that is not there would be an error in the browser's console.
+  /** @param {string} path */
+  const found = async (path) =>
+    (await list(path)).includes(path) ? fetched(address(path)) : { bytes: null, tag: null };
   return {
     kind: "server",
-    read: async (path) => (await fetched(address(path))).bytes,
-    list: async (prefix) => {
-      const response = await fetch(`${base}?prefix=${encodeURIComponent(prefix)}`);
-      return (await (await accepted(response)).json()).sort();
-    },
+    read: async (path) => (await found(path)).bytes,
+    list,
     write: async (path, bytes) => {
       await accepted(await put(address(path), bytes, {}));
     },
-    update: (path, change) => updated(address(path), change),
+    update: (path, change) => updated(address(path), () => found(path), change),
   };
 }
 
+/** @typedef {{bytes: Uint8Array | null, tag: string | null}} Found null: there is none */
+
 /**
  * @param {string} url
- * @returns {Promise<{bytes: Uint8Array | null, tag: string | null}>}
+ * @returns {Promise<Found>}
  */
 async function fetched(url) {
   const response = await fetch(url, { cache: "no-store" });
@@ -52,11 +60,12 @@ async function fetched(url) {
 
 /**
  * @param {string} url
+ * @param {() => Promise<Found>} find
  * @param {(old: Uint8Array | null) => Promise<Uint8Array | null>} change
  */
-async function updated(url, change) {
+async function updated(url, find, change) {
   for (let tries = 0; tries < TRIES_MAX; tries += 1) {
-    const old = await fetched(url);
+    const old = await find();
     const bytes = await change(old.bytes);
     if (!bytes) {
       return;
