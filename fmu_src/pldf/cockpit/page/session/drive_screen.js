@@ -202,12 +202,12 @@ class DriveScreen {
 
   /** @param {string} reason why the drive stands */
   halt(reason) {
+    if (reason === "ready") {
+      return; // the countdown lets it begin
+    }
     clearTimeout(this.counting);
     this.paused = true;
     this.times.interrupted();
-    if (reason === "ready") {
-      return;
-    }
     fill(this.count);
     this.options.tell?.("paused", reason);
     this.dialog.open(reason, this.options.inputs);
