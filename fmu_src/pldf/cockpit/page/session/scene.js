@@ -1,6 +1,5 @@
 // What is seen and heard of a moment, of a drive or of a recording.
 
-import { Sound } from "../view/sound.js";
 import { View } from "../view/view.js";
 import { reducedMotion } from "./settings.js";
 
@@ -19,8 +18,6 @@ export class Scene {
     this.canvas = canvas;
     this.road = road;
     this.view = viewOf(canvas, road, settings);
-    this.sound = settings.sound ? new Sound() : null;
-    this.settings = { ...settings };
   }
 
   /**
@@ -30,17 +27,12 @@ export class Scene {
   set(settings) {
     this.view.options.mirror = settings.mirror;
     this.view.camera = settings.camera;
-    if (settings.sound !== (this.sound !== null)) {
-      this.sound?.dispose();
-      this.sound = settings.sound ? new Sound() : null;
-    }
   }
 
   /**
    * @param {Frame} frame
-   * @param {boolean} paused then it is silent
    */
-  draw(frame, paused) {
+  draw(frame) {
     const { values } = frame;
     const speed_mps = number(values["vehicle.speed_mps"]);
     const acceleration_mps2 = number(values["vehicle.acceleration_mps2"]);
@@ -48,15 +40,10 @@ export class Scene {
     this.view.draw({
       s_m: number(values["vehicle.s_m"]),
       speed_mps,
+      acceleration_mps2,
       lateral_m: frame.lateral_m,
       heading_rad: frame.heading_rad,
       lead: present ? { gap_m: number(values["lead.gap_m"]) } : null,
-    });
-    this.sound?.play({
-      speed_mps: paused ? 0 : speed_mps,
-      acceleration_mps2,
-      gas_pedal: number(values["driver.gas_pedal"]),
-      running: !paused,
     });
   }
 
@@ -66,7 +53,6 @@ export class Scene {
 
   dispose() {
     this.view.dispose();
-    this.sound?.dispose();
   }
 }
 

@@ -28,18 +28,14 @@ export function serverStorage(base) {
     const response = await fetch(`${base}?prefix=${encodeURIComponent(prefix)}`, { cache: "no-store" });
     return (await (await accepted(response)).json()).sort();
   };
-  // Asking for a file that is not there would be an error in the browser's console.
-  /** @param {string} path */
-  const found = async (path) =>
-    (await list(path)).includes(path) ? fetched(address(path)) : { bytes: null, tag: null };
   return {
     kind: "server",
-    read: async (path) => (await found(path)).bytes,
+    read: async (path) => (await fetched(address(path))).bytes,
     list,
     write: async (path, bytes) => {
       await accepted(await put(address(path), bytes, {}));
     },
-    update: (path, change) => updated(address(path), () => found(path), change),
+    update: (path, change) => updated(address(path), change),
   };
 }
 
@@ -60,12 +56,11 @@ async function fetched(url) {
 
 /**
  * @param {string} url
- * @param {() => Promise<Found>} find
  * @param {(old: Uint8Array | null) => Promise<Uint8Array | null>} change
  */
-async function updated(url, find, change) {
+async function updated(url, change) {
   for (let tries = 0; tries < TRIES_MAX; tries += 1) {
-    const old = await find();
+    const old = await fetched(url);
     const bytes = await change(old.bytes);
     if (!bytes) {
       return;
