@@ -36,7 +36,7 @@ export const KEYS = Object.freeze({
 const WAYS = new Set(["resume", "cancel", "up", "down"]);
 
 /** What keys are written into. */
-const WRITTEN_INTO = "input, select, textarea";
+const WRITTEN_INTO = "input, select, textarea, [contenteditable]";
 
 /** Travel per second of a pedal that is pressed, and that is let go. */
 const PEDAL_RATES = Object.freeze({ gas: [0.7, 3], brake: [0.9, 4] });
@@ -185,8 +185,6 @@ function isWay(action) {
 
 /** @param {KeyboardEvent} event */
 function isWriting(event) {
-  const { target } = event;
-  return (
-    target instanceof HTMLElement && (target.isContentEditable || target.matches(WRITTEN_INTO))
-  );
+  const target = /** @type {Partial<Element> | null} */ (event.target);
+  return target?.matches?.(WRITTEN_INTO) ?? false;
 }
