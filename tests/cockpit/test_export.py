@@ -22,16 +22,17 @@ INDEX = """<!doctype html>
 <title>waiting</title>
 <link rel="stylesheet" href="style.css">
 <link rel="stylesheet" href="view/view.css">
-</head>
-<body><p id="text">one</p>
+<link rel="icon" href="icon.svg">
 <script type="module" src="main.js"></script>
-</body>
+</head>
+<body><p id="text">one</p></body>
 </html>
 """
 FILES = {
     "index.html": INDEX,
     "style.css": "#text { color: rgb(1, 2, 3); }",
     "view/view.css": "#text { font-weight: 900; }",
+    "icon.svg": '<svg xmlns="http://www.w3.org/2000/svg"/>',
     "main.js": """import { doubled } from "./shared.js";
 import {
   workerUrl,
@@ -126,6 +127,13 @@ def test_what_cannot_be_put_together_is_refused(tmp_path: Path, text: str) -> No
     (tmp_path / "root.js").write_text(text, encoding="utf-8")
     with pytest.raises(ValueError, match=r"root.js: export"):
         one_script(tmp_path, "root.js")
+
+
+def test_the_policy_comes_before_what_it_is_for(page: Path) -> None:
+    text = exported_page(b"{}", page)
+    assert text.index("Content-Security-Policy") < min(map(text.index, ("<style", "<script")))
+    assert "unsafe-inline" not in text
+    assert not re.search(r'(?:href|src)="(?!data:)', text)
 
 
 def test_the_same_page_gives_the_same_bytes(page: Path) -> None:

@@ -17,6 +17,8 @@ from .server import PAGE
 MAIN: Final = "main.js"
 WORKER: Final = "engine/worker.js"
 _STYLE: Final = re.compile(r'<link rel="stylesheet" href="([^"]+)"\s*/?>\n?')
+_CHARSET: Final = '<meta charset="utf-8">'  # what follows it obeys the policy
+_ICON: Final = re.compile(r'(?<=<link rel="icon" href=")([^"]+)(?=">)')
 _SCRIPT: Final = re.compile(r'<script type="module" src="([^"]+)"></script>')
 
 
@@ -43,20 +45,22 @@ def exported_page(bundle: bytes, page: Path = PAGE) -> str:
     """
     text = (page / "index.html").read_text(encoding="utf-8")
     style = "\n".join((page / name).read_text(encoding="utf-8") for name in _STYLE.findall(text))
-    addresses = json.dumps({WORKER: _as_address(one_script(page, WORKER))})
+    worker = _as_address(one_script(page, WORKER).encode(), "text/javascript")
+    addresses = json.dumps({WORKER: worker})
     script = _inside(f"globalThis.pldfModules = {addresses};\n{one_script(page, MAIN)}")
     policy = _policy(script, style)
     head = (
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n<style>{style}</style>\n'
     )
     data = f'<script type="application/json" id="bundle">{bundle.decode()}</script>'
-    text = _STYLE.sub("", text).replace("</head>", f"{head}</head>", 1)
+    text = _STYLE.sub("", text).replace(_CHARSET, f"{_CHARSET}\n{head}", 1)
+    text = _ICON.sub(lambda m: _as_address((page / m[1]).read_bytes(), "image/svg+xml"), text)
     return _SCRIPT.sub(lambda _: f'{data}\n<script type="module">{script}</script>', text)
 
 
-def _as_address(script: str) -> str:
-    """Return a script as an address: a page from a disk cannot start a worker from elsewhere."""
-    return f"data:text/javascript;base64,{base64.b64encode(script.encode()).decode()}"
+def _as_address(data: bytes, kind: str) -> str:
+    """Return a file as an address: a page from a disk can neither ask for one nor start one."""
+    return f"data:{kind};base64,{base64.b64encode(data).decode()}"
 
 
 def _inside(script: str) -> str:
