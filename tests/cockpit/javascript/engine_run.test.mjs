@@ -132,6 +132,31 @@ test("a machine that is always too slow lets the drive stand", () => {
   assert.equal(run.paused?.reason, "late");
 });
 
+test("a page that is stuck lets the drive stand; one that never said anything does not", () => {
+  const { time, drive, run } = standing();
+  /** @param {number} till_ms */
+  const driveTill = (till_ms) => {
+    for (; time.now_ms < till_ms; time.now_ms += 10) {
+      run.tick();
+    }
+  };
+  const paused = () => run.paused?.reason ?? "";
+  run.resume();
+  driveTill(8000);
+  assert.equal(paused(), "");
+  run.hear({ ...RELEASED, gas_pedal: 0.5 });
+  driveTill(8900);
+  assert.equal(paused(), "");
+  assert.equal(drive.person.now.gas_pedal, 0.5);
+  driveTill(9100);
+  assert.equal(paused(), "late");
+  assert.equal(drive.person.now.gas_pedal, 0);
+  time.now_ms = 20_000;
+  run.resume();
+  driveTill(20_500);
+  assert.equal(paused(), "");
+});
+
 test("as fast as possible nothing is late, and others are heard in between", () => {
   const { time, drive, run } = standing();
   const advance = drive.advance;

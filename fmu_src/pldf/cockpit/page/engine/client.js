@@ -59,7 +59,7 @@ export class DriveClient {
   }
 
   /**
-   * Tell what the person does now.
+   * Tell what the person does now: with every picture, for a page that says nothing is taken as stuck.
    * @param {Controls} controls
    */
   input(controls) {

@@ -13,6 +13,8 @@ export const LATE = "late";
 /** Lost at once, or in all since the drive went on: then a person should notice, and it stands. */
 const LOST_AT_ONCE_MAX_MS = 1000;
 const LOST_MAX_MS = 3000;
+/** A page that has said nothing for so long, in ms, shows nothing and hears no pedal: the drive stands. */
+const UNHEARD_MAX_MS = 1000;
 /** How long a drive as fast as possible runs before others are heard, in ms. */
 const SLICE_MS = 40;
 
@@ -34,6 +36,17 @@ export class Run {
     this.late_steps = 0;
     this.late_max_ms = 0;
     this.stepping_ms = 0;
+    /** When the person was heard last; a page tells with every picture. */
+    this.heard_ms = Infinity;
+  }
+
+  /**
+   * Hear what the person does now.
+   * @param {import("../types.js").Controls} controls
+   */
+  hear(controls) {
+    this.heard_ms = this.clock_ms();
+    this.drive.person?.take(controls);
   }
 
   /**
@@ -59,6 +72,7 @@ export class Run {
     const now_ms = this.clock_ms();
     this.keepPause(now_ms);
     this.lost_ms = 0;
+    this.heard_ms = Math.max(this.heard_ms, now_ms);
     this.steps.start(now_ms);
   }
 
@@ -82,7 +96,11 @@ export class Run {
       this.keep(lost_ms, LATE);
     }
     this.late_steps += Math.max(0, steps - 1);
-    return this.make(steps);
+    const end = this.make(steps);
+    if (end === null && now_ms - this.heard_ms > UNHEARD_MAX_MS) {
+      this.pause(LATE);
+    }
+    return end;
   }
 
   /**

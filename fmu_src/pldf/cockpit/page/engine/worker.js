@@ -139,7 +139,7 @@ page.onmessage = ({ data }) => {
   if (told.kind === "start") {
     attempt(() => start(told.bundle, told.setup));
   } else if (told.kind === "input") {
-    run?.drive.person?.take(told.controls);
+    run?.hear(told.controls);
   } else if (told.kind === "pause") {
     pause(told.reason);
   } else if (told.kind === "resume") {
