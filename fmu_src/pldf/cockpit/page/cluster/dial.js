@@ -20,7 +20,7 @@ const RADIUS = 82;
 const SCALE = { KMH: { end: 160, tick: 20 }, MPH: { end: 100, tick: 10 } };
 const NOTABLE = 1; // smaller lessons are not drawn, in the unit of the dial
 
-/** A dial in a box of 200 units. */
+/** A dial around the point 100, 100; below it nothing is drawn. */
 export class Dial {
   /** @param {Unit} unit */
   constructor(unit) {
@@ -31,7 +31,7 @@ export class Dial {
     this.set = svg("path", { "class": "dial-set", "d": `M100 ${100 - RADIUS + 8}l-7 13h14z` });
     this.number = svg("text", { "class": "dial-number", "x": 100, "y": 112 });
     this.drawing = svg(
-      "svg", { "class": "dial", "viewBox": "0 0 200 178", "aria-hidden": "true" },
+      "svg", { "class": "dial", "viewBox": "0 6 200 142", "aria-hidden": "true" },
       svg("path", { "class": "dial-track", "d": arc(BEGIN_DEG, END_DEG) }),
       this.lesson, this.arc, ...ticks(unit), this.limit, this.set, this.number,
       svg("text", { "class": "dial-unit", "x": 100, "y": 138 }, unitText(unit)),
