@@ -2,7 +2,11 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
 import { STANDARD } from "../../../fmu_src/pldf/cockpit/page/engine/inputs/calibration.js";
-import { GamepadInput } from "../../../fmu_src/pldf/cockpit/page/engine/inputs/gamepad.js";
+import {
+  connectedDevices,
+  deviceNamed,
+  GamepadInput,
+} from "../../../fmu_src/pldf/cockpit/page/engine/inputs/gamepad.js";
 import { Inputs } from "../../../fmu_src/pldf/cockpit/page/engine/inputs/inputs.js";
 import { Keyboard } from "../../../fmu_src/pldf/cockpit/page/engine/inputs/keyboard.js";
 
@@ -171,4 +175,19 @@ test("a device that is gone is told", () => {
   pads[0].connected = false;
   assert.equal(inputs.read(0), null);
   assert.equal(new Inputs(keyboard).read(0)?.gas_pedal, 0);
+});
+
+test("pedals with a plug of their own are one device with the wheel, however they were plugged in", () => {
+  const [wheel] = pads;
+  const pedals = { ...wheel, id: "THE pedals", axes: [0.25], buttons: [] };
+  pads = [wheel, pedals];
+  assert.deepEqual(
+    connectedDevices().map(({ id }) => id),
+    [PAD, "THE pedals", `THE pedals + ${PAD}`],
+  );
+  pads = [pedals, wheel];
+  assert.equal(deviceNamed(`THE pedals + ${PAD}`)?.axes[0], 0.25);
+  pads = [pedals];
+  assert.equal(deviceNamed(`THE pedals + ${PAD}`), null);
+  assert.equal(deviceNamed(PAD), null);
 });

@@ -8,6 +8,7 @@ import { calibrate } from "./calibration_screen.js";
 import { keysTable } from "./keys_table.js";
 import { say } from "./drive_words.js";
 
+/** @typedef {import("../engine/inputs/gamepad.js").Pad} Pad */
 /** @typedef {import("../engine/inputs/inputs.js").Inputs} Inputs */
 /** @typedef {import("./app.js").App} App */
 /** @typedef {{name: string | null, calibrate: boolean}} Choice name null: keyboard */
@@ -64,7 +65,7 @@ function offered(app) {
 }
 
 /**
- * @param {Gamepad} device
+ * @param {Pad} device
  * @param {(choice: Choice) => void} chosen
  */
 function deviceRow(device, chosen) {

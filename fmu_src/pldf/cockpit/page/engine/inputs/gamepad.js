@@ -11,16 +11,37 @@ import { Lever } from "./lever.js";
 /** @type {readonly Way[]} */
 const WAYS = ["resume", "cancel", "up", "down"];
 
+/** @typedef {Pick<Gamepad, "id" | "mapping" | "axes" | "buttons">} Pad */
+
+const AND = " + ";
+
 /**
- * Return the devices that are connected. Browsers show one only after a button of it was pressed.
- * @returns {Gamepad[]}
+ * Return the devices that are connected, and all of them as one: pedals may have a plug of their own.
+ * Browsers show a device only after a button of it was pressed.
+ * @returns {Pad[]}
  */
 export function connectedDevices() {
-  return navigator.getGamepads().flatMap((device) => (device?.connected ? [device] : []));
+  const found = navigator.getGamepads().flatMap((device) => (device?.connected ? [device] : []));
+  return found.length > 1 ? [...found, together(found)] : found;
 }
 
 /**
- * Return the device of this name (`Gamepad.id`); null if it is not connected.
+ * @param {Gamepad[]} devices
+ * @returns {Pad}
+ */
+function together(devices) {
+  // By name: the order in which they were plugged in must not decide what is which.
+  const sorted = devices.toSorted((one, other) => (one.id < other.id ? -1 : 1));
+  return {
+    id: sorted.map(({ id }) => id).join(AND),
+    mapping: "",
+    axes: sorted.flatMap(({ axes }) => [...axes]),
+    buttons: sorted.flatMap(({ buttons }) => [...buttons]),
+  };
+}
+
+/**
+ * Return the device of this name (`Pad.id`); null if it is not connected, or a part of it.
  * @param {string} name
  */
 export function deviceNamed(name) {
@@ -30,7 +51,7 @@ export function deviceNamed(name) {
 /** One device. */
 export class GamepadInput {
   /**
-   * @param {string} name of the device (`Gamepad.id`)
+   * @param {string} name of the device (`Pad.id`)
    * @param {Calibration} calibration
    */
   constructor(name, calibration) {
