@@ -4,7 +4,7 @@ import { KERB_M, PARAPET_M, beyondEdge } from "./profile.js";
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
 /** @typedef {import("./mesh.js").MeshBuilder} MeshBuilder */
 /** @typedef {import("./profile.js").CrossSection} CrossSection */
-/** @typedef {{road: RoadModel, section: CrossSection, solid: MeshBuilder}} Site */
+/** @typedef {{road: RoadModel, section: CrossSection, solid: MeshBuilder, detail: import("./plants.js").Detail}} Site */
 
 const WHITE = 0xf2f2ee;
 const STEEL = 0xaab0b4;
@@ -20,6 +20,10 @@ export function standAt({ road, solid }, s_m, left_m, up_m = 0) {
 export function reflectorPosts(site, s_m) {
   for (const left of [true, false]) {
     const solid = standAt(site, s_m, beyondEdge(site.section, left, 0.7), -0.1);
+    if (!site.detail) {
+      solid.box([-0.06, -0.07, 0], [0.06, 0.07, 1.08], WHITE);
+      continue;
+    }
     solid.box([-0.06, -0.07, 0], [0.06, 0.07, 0.78], WHITE);
     solid.box([-0.06, -0.07, 0.78], [0.06, 0.07, 0.98], 0x18191a);
     solid.box([-0.06, -0.07, 0.98], [0.06, 0.07, 1.08], WHITE);
@@ -37,9 +41,10 @@ export function guardRail(site, from_m, to_m, left) {
   const at_m = beyondEdge(site.section, left, 1.1);
   for (let s_m = from_m; s_m < to_m; s_m += 4) {
     const next = Math.min(s_m + 4, to_m);
+    band(site, s_m, next, at_m, [0.42, 0.74], STEEL, site.detail ? 1 : 1.12);
+    if (!site.detail) continue;
     standAt(site, s_m, at_m, -0.2).box([-0.05, -0.06, 0], [0.05, 0.06, 0.85], STEEL);
-    band(site, s_m, next, at_m, [0.42, 0.58], STEEL, 1);
-    band(site, s_m, next, at_m, [0.58, 0.74], STEEL, 1.25);
+    if (site.detail === 2) band(site, s_m, next, at_m + (left ? -0.02 : 0.02), [0.58, 0.74], STEEL, 1.25);
   }
 }
 
@@ -47,10 +52,11 @@ export function guardRail(site, from_m, to_m, left) {
 export function railing(site, from_m, to_m) {
   for (const left of [true, false]) {
     const at_m = beyondEdge(site.section, left, 1.3);
-    for (let s_m = from_m; s_m < to_m; s_m += 2.5) {
-      const next = Math.min(s_m + 2.5, to_m);
+    const step_m = site.detail ? 2.5 : 10;
+    for (let s_m = from_m; s_m < to_m; s_m += step_m) {
+      const next = Math.min(s_m + step_m, to_m);
       standAt(site, s_m, at_m, KERB_M).box([-0.04, -0.04, 0], [0.04, 0.04, PARAPET_M], 0x5d7f8c);
-      for (const up of [0.35, 0.65, 0.95]) band(site, s_m, next, at_m, [up, up + 0.07], 0x6f93a0, 1);
+      for (const up of site.detail ? [0.35, 0.65, 0.95] : [0.95]) band(site, s_m, next, at_m, [up, up + 0.07], 0x6f93a0, 1);
     }
     band(site, from_m, to_m, at_m + (left ? 0.2 : -0.2), [-1.4, KERB_M + 0.12], CONCRETE, 1);
   }

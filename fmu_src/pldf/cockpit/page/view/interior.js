@@ -74,8 +74,8 @@ export class Interior {
       for (let k = 0; k < across; k++) {
         const [a, b, c, d] = [at(rows[row - 1], k), at(rows[row - 1], k + 1), at(rows[row], k + 1), at(rows[row], k)];
         points.push(a, b, c, a, c, d);
-        const light = 0.2 + 0.1 * Math.sin((Math.PI * (k + 0.5)) / across) + 0.06 * row;
-        for (let corner = 0; corner < 6; corner++) colors.push(light * 0.45, light * 0.72, light);
+        const light = 0.16 + 0.09 * Math.sin((Math.PI * (k + 0.5)) / across) + 0.06 * row;
+        for (let corner = 0; corner < 6; corner++) colors.push(light * 0.5, light * 0.75, light);
       }
     }
     const geometry = triangles(points);

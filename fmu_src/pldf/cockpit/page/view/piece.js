@@ -39,15 +39,15 @@ const DECK = 0xa8a69f;
 const SOLID_LINE_PER_M = 1 / 500; // no overtaking in such a curve
 const WATER = 0x7fa9bf;
 
-/** @param {Kit} kit @param {number} k which piece @param {boolean} detailed */
-export function piece(kit, k, detailed) {
+/** @param {Kit} kit @param {number} k which piece @param {import("./plants.js").Detail} detail */
+export function piece(kit, k, detail) {
   const { road, section } = kit;
   const [from_m, to_m] = [k * PIECE_M, Math.min((k + 1) * PIECE_M, road.length_m)];
   const start = road.at(from_m);
   const origin = { x_m: start.x_m, y_m: start.y_m };
   const solid = new MeshBuilder(origin);
   /** @type {Site} */
-  const site = { road, section, solid };
+  const site = { road, section, solid, detail };
   const group = new Group();
   const put = (/** @type {Mesh | null} */ mesh) => mesh && group.add(mesh);
   surface(kit, solid, from_m, to_m).forEach(put);
@@ -55,7 +55,7 @@ export function piece(kit, k, detailed) {
   bridges(kit, site, from_m, to_m);
   const middle = road.at((from_m + to_m) / 2);
   const height = kit.ground.around(middle.x_m, middle.y_m, PIECE_M);
-  grow({ site, height, detailed }, from_m, to_m);
+  grow({ site, height, detail }, from_m, to_m);
   put(solid.mesh());
   return { group, origin };
 }

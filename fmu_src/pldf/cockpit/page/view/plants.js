@@ -23,53 +23,56 @@ const FACES = [
   [3, 8, 9], [4, 9, 5], [2, 4, 11], [6, 2, 10], [8, 6, 7], [9, 8, 1],
 ];
 
+/** @typedef {0 | 1 | 2} Detail from far away, from some distance, from near */
+
 /**
  * @param {MeshBuilder} solid
  * @param {number} seed which tree it is
- * @param {boolean} detailed
+ * @param {Detail} detail
  * @param {number} size 1: of usual height
  */
-export function leafTree(solid, seed, detailed, size = 1) {
+export function leafTree(solid, seed, detail, size = 1) {
   const height = size * between(6.5, 11, chance(seed, 1));
   const radius = height * between(0.24, 0.32, chance(seed, 2));
   const hex = LEAVES[Math.floor(chance(seed, 3) * LEAVES.length)];
   const trunk = chance(seed, 4) < 0.15 ? BIRCH : TRUNK;
-  solid.cone([0, 0, -0.4], 0.028 * height, 0.018 * height, height * 0.55, detailed ? 6 : 3, trunk);
-  if (!detailed) {
-    crown(solid, [0, 0, height * 0.63], [radius, radius, height * 0.37], hex, seed);
+  solid.cone([0, 0, -0.4], 0.028 * height, detail ? 0.018 * height : 0, height * 0.55, detail === 2 ? 6 : 3, trunk);
+  if (detail === 0) {
+    solid.cone([0, 0, height * 0.55], radius, 0, height * 0.45, 4, hex, 0.95);
+    solid.cone([0, 0, height * 0.55], -radius, 0, -height * 0.28, 4, hex, 0.9);
     return;
   }
-  crown(solid, [0, 0, height * 0.66], [radius * 0.95, radius * 0.95, height * 0.34], hex, seed);
-  for (let k = 0; k < 3; k++) {
+  crown(solid, [0, 0, height * 0.65], [radius, radius, height * 0.35], hex, seed);
+  for (let k = 0; k < (detail === 2 ? 3 : 0); k++) {
     const turn = 2.1 * k + 6 * chance(seed, 5);
-    const out = radius * 0.55;
+    const out = radius * 0.58;
     const part = radius * between(0.55, 0.7, chance(seed, k, 6));
     const up = height * between(0.48, 0.62, chance(seed, k, 7));
     crown(solid, [out * Math.cos(turn), out * Math.sin(turn), up], [part, part, part * 1.05], hex, seed + k);
   }
 }
 
-/** @param {MeshBuilder} solid @param {number} seed @param {boolean} detailed */
-export function fir(solid, seed, detailed, size = 1) {
+/** @param {MeshBuilder} solid @param {number} seed @param {Detail} detail */
+export function fir(solid, seed, detail, size = 1) {
   const height = size * between(8, 15, chance(seed, 1));
   const radius = height * between(0.17, 0.22, chance(seed, 2));
   const hex = NEEDLES[Math.floor(chance(seed, 3) * NEEDLES.length)];
-  if (!detailed) {
-    solid.cone([0, 0, height * 0.1], radius, 0, height * 0.9, 5, hex, 0.95);
+  if (detail < 2) {
+    solid.cone([0, 0, height * 0.08], radius, 0, height * 0.92, detail ? 5 : 3, hex, 0.95);
     return;
   }
   solid.cone([0, 0, -0.4], 0.02 * height, 0.015 * height, height * 0.25, 5, TRUNK);
   for (const [from, share, shade] of [[0.1, 1, 0.8], [0.32, 0.78, 0.95], [0.54, 0.55, 1.05], [0.74, 0.32, 1.15]]) {
-    solid.cone([0, 0, height * from], radius * share, 0, height * 0.38 * (0.6 + share * 0.4), 8, hex, shade);
+    solid.cone([0, 0, height * from], radius * share, 0, height * 0.38 * (0.6 + share * 0.4), 7, hex, shade);
   }
 }
 
-/** @param {MeshBuilder} solid @param {number} seed @param {boolean} detailed */
-export function bush(solid, seed, detailed) {
+/** @param {MeshBuilder} solid @param {number} seed @param {Detail} detail */
+export function bush(solid, seed, detail) {
   const radius = between(0.4, 1, chance(seed, 1));
   const hex = BUSH[Math.floor(chance(seed, 3) * BUSH.length)];
-  if (detailed) crown(solid, [0, 0, radius * 0.5], [radius, radius * 0.9, radius * 0.8], hex, seed);
-  else solid.cone([0, 0, 0], radius, radius * 0.4, radius, 4, hex);
+  if (detail === 2) crown(solid, [0, 0, radius * 0.5], [radius, radius * 0.9, radius * 0.8], hex, seed);
+  else solid.cone([0, 0, 0], radius, 0, radius * 1.2, 4, hex);
 }
 
 /** High grass beside the road. @param {MeshBuilder} solid @param {number} seed */

@@ -8,7 +8,8 @@ import { beyondEdge } from "./profile.js";
 /** @typedef {import("./along.js").Site} Site */
 /** @typedef {import("./mesh.js").MeshBuilder} MeshBuilder */
 /** @typedef {(x_m: number, y_m: number) => {z_m: number, distance_m: number}} Height */
-/** @typedef {{site: Site, height: Height, detailed: boolean}} Scene */
+/** @typedef {{site: Site, height: Height, detail: Detail}} Scene */
+/** @typedef {import("./plants.js").Detail} Detail */
 /** @typedef {"forest" | "avenue" | "meadow" | "village" | "bridge"} Country */
 
 const CLEAR_M = 4.4; // nothing grows nearer to the asphalt: the law's, and room for posts and signs
@@ -40,28 +41,29 @@ const GROWTH = {
   forest(scene, s_m, left, seed) {
     for (let row = 0; row < 4; row++) {
       const own = seed * 8 + row;
-      if (chance(own, 60) > 0.21) continue;
+      if (chance(own, 60) > 0.17) continue;
       const out = CLEAR_M + 1.5 + row * 6 + 5 * chance(own, 61);
       plant(scene, s_m, left, out, (solid) => {
         const needles = hills(s_m / 60, row, 9) > -0.1;
-        if (needles) fir(solid, own, scene.detailed);
-        else leafTree(solid, own, scene.detailed);
+        // Behind the first rows little is seen of a tree.
+        const detail = row < 2 ? scene.detail : Math.min(scene.detail, 1);
+        (needles ? fir : leafTree)(solid, own, /** @type {Detail} */ (detail));
       });
     }
     edge(scene, s_m, left, seed);
   },
   avenue(scene, s_m, left, seed) {
     if (s_m % 14 === (left ? 0 : 7)) {
-      plant(scene, s_m, left, CLEAR_M + 0.6, (solid) => leafTree(solid, seed, scene.detailed, 1.05));
+      plant(scene, s_m, left, CLEAR_M + 0.6, (solid) => leafTree(solid, seed, scene.detail, 1.05));
     }
     edge(scene, s_m, left, seed);
   },
   meadow(scene, s_m, left, seed) {
     if (chance(seed, 70) < 0.02) {
       const out = CLEAR_M + 1 + 22 * chance(seed, 71) ** 2;
-      plant(scene, s_m, left, out, (solid) => leafTree(solid, seed, scene.detailed));
+      plant(scene, s_m, left, out, (solid) => leafTree(solid, seed, scene.detail));
     }
-    if (s_m % 4 === 0 && hills(s_m / 120, left ? 3 : 8, 11) > 0.1) fence(scene, s_m, left);
+    if (scene.detail && s_m % 4 === 0 && hills(s_m / 120, left ? 3 : 8, 11) > 0.1) fence(scene, s_m, left);
     edge(scene, s_m, left, seed);
   },
   village(scene, s_m, left, seed) {
@@ -73,7 +75,7 @@ const GROWTH = {
       const out = between(4.5, 8, chance(seed, 80));
       plant(scene, s_m, left, out, (solid) => house(solid, seed, away));
       plant(scene, s_m, left, 2.7, (solid) => hedge(solid, 9 + 3 * chance(seed, 81)));
-      plant(scene, s_m + 13, left, out + 4, (solid) => leafTree(solid, seed, scene.detailed, 0.7));
+      plant(scene, s_m + 13, left, out + 4, (solid) => leafTree(solid, seed, scene.detail, 0.7));
       plant(scene, s_m, left, 28 + 8 * chance(seed, 82), (solid) => house(solid, seed + 1, away));
     }
     const middle = village && Math.round((village.from_m + village.to_m) / 2) === s_m;
@@ -84,10 +86,10 @@ const GROWTH = {
 
 /** Bushes and high grass at the side of the road. @param {Scene} scene @param {number} s_m @param {boolean} left @param {number} seed */
 function edge(scene, s_m, left, seed) {
-  if (chance(seed, 90) < 0.035) {
-    plant(scene, s_m, left, CLEAR_M + 4 * chance(seed, 91), (solid) => bush(solid, seed, scene.detailed));
+  if (scene.detail && chance(seed, 90) < 0.035) {
+    plant(scene, s_m, left, CLEAR_M + 4 * chance(seed, 91), (solid) => bush(solid, seed, scene.detail));
   }
-  if (scene.detailed && chance(seed, 92) < 0.5) {
+  if (scene.detail === 2 && chance(seed, 92) < 0.45) {
     plant(scene, s_m, left, 1.4 + 3 * chance(seed, 93), (solid) => tuft(solid, seed));
   }
 }
@@ -96,7 +98,7 @@ function edge(scene, s_m, left, seed) {
 function fence(scene, s_m, left) {
   plant(scene, s_m, left, CLEAR_M + 2.4, (solid) => {
     solid.box([-0.06, -0.06, -0.3], [0.06, 0.06, 1.25], 0x8a7358);
-    if (!scene.detailed) return;
+    if (scene.detail < 2) return;
     for (const up of [0.6, 1.05]) solid.box([0, -0.03, up], [4, 0.03, up + 0.1], 0x9a8468);
   });
 }

@@ -7,8 +7,8 @@ import { GRASS_M } from "./textures.js";
 /** @typedef {import("./ground.js").Ground} Ground */
 
 export const TILE_M = 200;
-const FINE_CELLS = 16;
-const COARSE_CELLS = 5;
+const FINE_CELLS = 10;
+const COARSE_CELLS = 4;
 const COARSE_BELOW_M = 0.6; // far away the land must not come through the road
 const FIELD_M = 85;
 // Meadows, grain, rape, ploughed land.

@@ -41,7 +41,7 @@ export function asphaltTexture(section, anisotropy) {
   patches(pen);
   cracks(pen);
   pen.globalCompositeOperation = "overlay";
-  pen.fillStyle = pen.createPattern(grain(0.55), "repeat") ?? "#808080";
+  pen.fillStyle = pen.createPattern(grain(0.26), "repeat") ?? "#808080";
   pen.fillRect(0, 0, width, height);
   return textureOf(made, { repeat: true, anisotropy });
 }

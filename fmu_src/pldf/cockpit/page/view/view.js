@@ -24,6 +24,9 @@ const NEAR_M = 0.3;
 const OWN_PAINT = 0x2d5f8f;
 const LEAD_PAINT = 0xb9402f;
 
+/** The browser cannot draw in three dimensions: the page says so and what to do. */
+export class NoWebGLError extends Error {}
+
 /** Draws a road into a canvas. */
 export class View {
   /**
@@ -36,7 +39,7 @@ export class View {
     this.road = road;
     this.options = options;
     const software = isSoftware(canvas);
-    this.renderer = new WebGLRenderer({ canvas, antialias: !software, powerPreference: "high-performance" });
+    this.renderer = rendererFor(canvas, !software);
     this.sharpness = new Sharpness(software ? 1 : Math.min(globalThis.devicePixelRatio || 1, 2));
     this.lens = new PerspectiveCamera(50, 1, NEAR_M, 2.2 * SIGHT_M);
     this.scene = new Scene();
@@ -123,4 +126,19 @@ export class View {
     this.interior.group.visible = false;
     this.mirror.see(this.renderer, this.scene, this.lens);
   }
+}
+
+/**
+ * The browser need not look through an opaque picture; three alone makes transparent ones.
+ * @param {HTMLCanvasElement} canvas @param {boolean} antialias
+ */
+function rendererFor(canvas, antialias) {
+  const context = canvas.getContext("webgl2", {
+    alpha: false,
+    antialias,
+    stencil: false,
+    powerPreference: "high-performance",
+  });
+  if (!context) throw new NoWebGLError("this browser shows no 3D pictures (WebGL 2)");
+  return new WebGLRenderer({ canvas, context, antialias });
 }

@@ -10,11 +10,12 @@ import { asphaltTexture, grassTexture } from "./textures.js";
 
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
 /** @typedef {import("./mesh.js").Origin} Origin */
-/** @typedef {{group: Group | Mesh, origin: Origin, fine: boolean}} Built */
+/** @typedef {import("./plants.js").Detail} Detail */
+/** @typedef {{group: Group | Mesh, origin: Origin, detail: Detail}} Built */
 
 const BEHIND_M = 300;
-const DETAIL_M = 220;
-const FINE_M = 420;
+const NEAR_M = 140;
+const FAR_M = 420;
 const BUILT_AT_ONCE = 1; // per frame: a drive must not stutter
 
 export class World {
@@ -47,12 +48,12 @@ export class World {
     const keys = new Set(wanted.map((each) => each.key));
     for (const [key, built] of this.built) if (!keys.has(key)) this.#drop(key, built);
     let room = all ? Infinity : BUILT_AT_ONCE;
-    for (const { key, fine, build } of wanted.sort((a, b) => a.distance_m - b.distance_m)) {
+    for (const { key, detail, build } of wanted.sort((a, b) => a.distance_m - b.distance_m)) {
       const there = this.built.get(key);
-      if (there?.fine === fine) continue;
+      if (there?.detail === detail) continue;
       if (room-- <= 0) break;
       if (there) this.#drop(key, there);
-      this.#keep(key, fine, build());
+      this.#keep(key, detail, build());
     }
   }
 
@@ -79,8 +80,8 @@ export class World {
     for (let k = Math.max(from, 0); k <= Math.min(to, last); k++) {
       const middle = (k + 0.5) * PIECE_M;
       const distance_m = Math.abs(middle - s_m);
-      const fine = middle > s_m - PIECE_M && distance_m < DETAIL_M;
-      wanted.push({ key: `piece ${k}`, fine, distance_m, build: () => piece(this.kit, k, fine) });
+      const detail = middle < s_m - PIECE_M ? far(distance_m) : detailAt(distance_m);
+      wanted.push({ key: `piece ${k}`, detail, distance_m, build: () => piece(this.kit, k, detail) });
     }
     return wanted;
   }
@@ -95,21 +96,21 @@ export class World {
       for (let j = j0 - reach; j <= j0 + reach; j++) {
         const distance_m = Math.hypot((i + 0.5) * TILE_M - x_m, (j + 0.5) * TILE_M - y_m);
         if (distance_m > SIGHT_M + TILE_M) continue;
-        const fine = distance_m < FINE_M;
+        const detail = far(distance_m);
         const build = () => {
-          const { mesh, origin } = tile(this.kit.ground, i, j, fine, this.kit.grass);
+          const { mesh, origin } = tile(this.kit.ground, i, j, detail > 0, this.kit.grass);
           return { group: mesh, origin };
         };
-        wanted.push({ key: `tile ${i} ${j}`, fine, distance_m, build });
+        wanted.push({ key: `tile ${i} ${j}`, detail, distance_m, build });
       }
     }
     return wanted;
   }
 
-  /** @param {string} key @param {boolean} fine @param {{group: Group | Mesh, origin: Origin}} made */
-  #keep(key, fine, { group, origin }) {
+  /** @param {string} key @param {Detail} detail @param {{group: Group | Mesh, origin: Origin}} made */
+  #keep(key, detail, { group, origin }) {
     this.group.add(group);
-    this.built.set(key, { group, origin, fine });
+    this.built.set(key, { group, origin, detail });
   }
 
   /** @param {string} key @param {Built} built */
@@ -118,4 +119,14 @@ export class World {
     group.traverse((part) => part instanceof Mesh && part.geometry.dispose());
     this.built.delete(key);
   }
+}
+
+/** @param {number} distance_m @returns {Detail} */
+function detailAt(distance_m) {
+  return distance_m < NEAR_M ? 2 : far(distance_m);
+}
+
+/** @param {number} distance_m @returns {0 | 1} */
+function far(distance_m) {
+  return distance_m < FAR_M ? 1 : 0;
 }
