@@ -7,6 +7,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+import numpy as np
+
 from ..cosim.prepared import prepared_route
 from ..findings import Finding
 from ..roads import Mark, Road, Route, fingerprint
@@ -177,23 +179,41 @@ def _bridges(pieces: Sequence[_Piece]) -> Iterator[dict[str, Any]]:
 
 def _bends(route: Route) -> Iterator[dict[str, Any]]:
     """Yield to which side a road without a line turns: prepared files have no signs there."""
-    if route.has_line:
-        return
-    begun: tuple[float, bool] | None = None
-    for s_m, curvature in zip(route.s_m, route.curvature_per_m, strict=True):
-        side = None if abs(curvature) < _STRAIGHT_PER_M else bool(curvature > 0.0)
-        if begun is not None and begun[1] != side:
-            yield _bend(begun, float(s_m))
-            begun = None
-        if begun is None and side is not None:
-            begun = (float(s_m), side)
-    if begun is not None:
-        yield _bend(begun, route.length_m)
+    last: _Bend | None = None
+    for bend in () if route.has_line else _bent(route):
+        if last is not None and (last.left, last.to_m) == (bend.left, bend.from_m):
+            last = last._replace(to_m=bend.to_m)
+            continue
+        if last is not None:
+            yield last.stretch()
+        last = bend
+    if last is not None:
+        yield last.stretch()
 
 
-def _bend(begun: tuple[float, bool], to_m: float) -> dict[str, Any]:
-    # The knot before and behind the bend are none of its own, but the curvature between is.
-    return _stretch("bend_left" if begun[1] else "bend_right", max(begun[0] - 1.0, 0.0), to_m, "")
+class _Bend(NamedTuple):
+    left: bool
+    from_m: float
+    to_m: float
+
+    def stretch(self) -> dict[str, Any]:
+        kind = "bend_left" if self.left else "bend_right"
+        return _stretch(kind, self.from_m, self.to_m, "")
+
+
+def _bent(route: Route) -> Iterator[_Bend]:
+    """Yield what lies between two knots and turns; one side after the other where it changes."""
+    s_m, curvature = route.s_m, route.curvature_per_m
+    bent = np.abs(curvature) > _STRAIGHT_PER_M
+    for k in np.flatnonzero(bent[:-1] | bent[1:]):
+        before, after = float(curvature[k]), float(curvature[k + 1])
+        from_m, to_m = float(s_m[k]), float(s_m[k + 1])
+        if before * after >= 0.0:
+            yield _Bend(before + after > 0.0, from_m, to_m)
+            continue
+        middle_m = from_m + (to_m - from_m) * before / (before - after)
+        yield _Bend(before > 0.0, from_m, middle_m)
+        yield _Bend(after > 0.0, middle_m, to_m)
 
 
 def _stretch(kind: str, from_m: float, to_m: float, name: str) -> dict[str, Any]:

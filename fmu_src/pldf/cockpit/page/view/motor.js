@@ -1,6 +1,6 @@
 // What motor, wind and road sound like at a speed: numbers, without a loudspeaker.
 
-/** @typedef {{speed_mps: number, acceleration_mps2: number}} Motion */
+/** @typedef {{speed_mps: number, acceleration_mps2: number, gas_pedal: number}} Motion */
 /**
  * @typedef {object} Noise
  * @property {number} motor_hz ignitions per second
@@ -29,8 +29,8 @@ export class Motor {
   }
 
   /** @param {Motion} motion @returns {Noise} */
-  noise({ speed_mps, acceleration_mps2 }) {
-    const load = clamp((acceleration_mps2 + 0.6) / (FULL_MPS2 + 0.6));
+  noise({ speed_mps, acceleration_mps2, gas_pedal }) {
+    const load = Math.max(clamp((acceleration_mps2 + 0.6) / (FULL_MPS2 + 0.6)), clamp(gas_pedal));
     const rpm = this.#revolutions(Math.max(speed_mps, 0), load);
     const share = clamp(speed_mps / FAST_MPS, 1.4);
     return {

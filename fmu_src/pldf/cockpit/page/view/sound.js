@@ -3,36 +3,24 @@ import { Motor } from "./motor.js";
 
 const NOISE_S = 4;
 const FOLLOW_S = 0.07; // how fast the sound follows the car
-const FADE_S = 0.25;
 const LOUDNESS = 0.6;
 // Strengths of the motor's harmonics: uneven ones are weak in a motor of four cylinders.
 const HARMONICS = [0, 1, 0.55, 0.62, 0.35, 0.3, 0.16, 0.18, 0.08, 0.07];
 
-/** Silent until `start`, which browsers allow only after a key or a click. */
+/** To be made in the wake of a key or a click: browsers let no page sound before. */
 export class Sound {
   constructor() {
     this.motor = new Motor();
-    this.on = true;
-    /** @type {Parts | null} */
-    this.parts = null;
+    /** null: a browser without sound; a drive without is better than none @type {Parts | null} */
+    this.parts = globalThis.AudioContext ? parts(new AudioContext()) : null;
+    void this.parts?.context.resume();
   }
 
-  /** Call it from a key or a click; a second call does nothing. @returns {Promise<void>} */
-  async start() {
-    if (!globalThis.AudioContext) return; // a drive without sound is better than none
-    this.parts ??= parts(new AudioContext());
-    await this.parts.context.resume();
-    this.#fade();
-  }
-
-  /** @param {boolean} on */
-  switch(on) {
-    this.on = on;
-    this.#fade();
-  }
-
-  /** What is heard from now on. @param {import("./motor.js").Motion} motion */
-  update(motion) {
+  /**
+   * What is heard from now on.
+   * @param {import("./motor.js").Motion & {running: boolean}} motion not running: silence
+   */
+  play({ running, ...motion }) {
     const noise = this.motor.noise(motion);
     const { parts: made } = this;
     if (!made) return;
@@ -46,23 +34,13 @@ export class Sound {
     follow(made.roadGain.gain, noise.road);
     follow(made.windTone.frequency, noise.wind_tone_hz);
     follow(made.windGain.gain, noise.wind);
-  }
-
-  /** Quiet while a drive is paused; `start` makes it sound again. */
-  async pause() {
-    await this.parts?.context.suspend();
+    follow(made.all.gain, running ? LOUDNESS : 0);
   }
 
   /** Nothing can be heard afterwards. */
-  async dispose() {
-    await this.parts?.context.close();
+  dispose() {
+    void this.parts?.context.close();
     this.parts = null;
-  }
-
-  #fade() {
-    if (!this.parts) return;
-    const { all, context } = this.parts;
-    all.gain.setTargetAtTime(this.on ? LOUDNESS : 0, context.currentTime, FADE_S);
   }
 }
 

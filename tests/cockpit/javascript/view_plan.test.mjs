@@ -1,0 +1,100 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { Motor } from "../../../fmu_src/pldf/cockpit/page/view/motor.js";
+import { furnitureOf, signText } from "../../../fmu_src/pldf/cockpit/page/view/plan.js";
+import { crossSection } from "../../../fmu_src/pldf/cockpit/page/view/profile.js";
+import { Sharpness } from "../../../fmu_src/pldf/cockpit/page/view/sharpness.js";
+import { roadModel } from "./road_support.mjs";
+
+const KMH = 1 / 3.6;
+
+/** A curve to the left from 300 to 400 m. @param {number} radius_m @param {number} limit_kmh */
+function curvy(radius_m, limit_kmh) {
+  const bent = (/** @type {number} */ s) => (s >= 300 && s < 400 ? 1 / radius_m : 0);
+  return roadModel(800, { curvature_per_m: bent, limit_mps: () => limit_kmh * KMH });
+}
+
+test("a sign stands where a limit begins, with its number", () => {
+  const limit_mps = (/** @type {number} */ s) => [100, 80, 50, 80][Math.floor(s / 250)] * KMH;
+  const { signs } = furnitureOf(roadModel(999, { limit_mps }));
+  const limits = signs.filter((sign) => sign.kind === "limit");
+  assert.deepEqual(limits.map((sign) => [sign.s_m, sign.text]), [
+    [25, "100"], [250, "80"], [500, "50"], [750, "80"],
+  ]);
+});
+
+test("a limit of 30 mph is shown as that, one of 50 km/h as 50", () => {
+  assert.deepEqual(signText(30 * 0.44704), { text: "30", unit: "mph" });
+  assert.deepEqual(signText(50 * KMH), { text: "50", unit: "" });
+  assert.deepEqual(signText(120 * KMH), { text: "120", unit: "" });
+  assert.deepEqual(signText(5 * KMH), { text: "5", unit: "" });
+});
+
+test("a village has its sign at both ends", () => {
+  const stretches = [{ kind: /** @type {const} */ ("village"), from_m: 100, to_m: 300, name: "Au" }];
+  const { signs, posts } = furnitureOf(roadModel(500, {}, { stretches }));
+  const town = signs.filter((sign) => sign.kind.startsWith("town"));
+  assert.deepEqual(town.map((sign) => [sign.kind, sign.s_m, sign.text]), [["town", 100, "Au"], ["town_end", 300, "Au"]]);
+  assert.ok(posts.every((s_m) => s_m < 100 || s_m >= 300) && posts.length > 3);
+});
+
+test("boards stand on the outside of curves that are sharp for their limit, and point into them", () => {
+  const { boards, curves, signs, rails } = furnitureOf(curvy(120, 80));
+  assert.equal(curves.length, 1);
+  assert.ok(curves[0].sharp && curves[0].left);
+  assert.ok(boards.length >= 3 && boards.every((b) => !b.left && b.to_left && b.s_m > 290 && b.s_m < 410));
+  const warning = signs.find((sign) => sign.kind === "curve_left");
+  assert.ok(warning && warning.s_m > 150 && warning.s_m < 200);
+  assert.ok(rails.every((rail) => !rail.left));
+  assert.deepEqual(furnitureOf(curvy(120, 40)).boards, []);
+});
+
+test("the cross-section has a line between any two lanes", () => {
+  const kinds = (/** @type {Parameters<typeof roadModel>[2]} */ about) =>
+    crossSection(roadModel(10, {}, about)).lines.map((line) => [line.at_m, line.kind]);
+  assert.deepEqual(kinds({}), [[3.5, "edge"], [-3.5, "edge"], [0, "middle"]]);
+  assert.deepEqual(kinds({ lanes_right: 2, lanes_left: 1 }), [
+    [3.5, "edge"], [-7, "edge"], [0, "middle"], [-3.5, "lane"],
+  ]);
+  assert.deepEqual(kinds({ lanes_right: 2, lanes_left: 0, traffic: "LHT" }), [
+    [7, "edge"], [-0, "edge"], [3.5, "lane"],
+  ]);
+});
+
+test("the motor turns faster with speed within a gear and shifts up", () => {
+  const motor = new Motor();
+  const gears = [];
+  let [before_hz, gear] = [0, 0];
+  for (let speed_mps = 0; speed_mps < 40; speed_mps += 0.1) {
+    const { motor_hz } = motor.noise({ speed_mps, acceleration_mps2: 1, gas_pedal: 0 });
+    assert.ok(motor_hz >= before_hz || motor.gear > gear);
+    assert.ok(motor_hz >= 28 && motor_hz < 150);
+    if (motor.gear !== gear) gears.push(motor.gear);
+    [before_hz, gear] = [motor_hz, motor.gear];
+  }
+  assert.deepEqual(gears, [1, 2, 3, 4, 5]);
+});
+
+test("wind and road are louder the faster one drives, the motor with the foot on the gas", () => {
+  const at = (/** @type {number} */ speed_mps, gas_pedal = 0) =>
+    new Motor().noise({ speed_mps, acceleration_mps2: 0, gas_pedal });
+  assert.ok(at(30).wind > 2 * at(15).wind && at(30).road > at(15).road && at(0).wind === 0);
+  assert.ok(at(20, 1).motor > at(20, 0).motor);
+});
+
+test("a slow machine gets fewer pixels, a fast one all, a pause changes nothing", () => {
+  const sharpness = new Sharpness(1);
+  let now_ms = 0;
+  const frames = (/** @type {number} */ count, /** @type {number} */ each_ms) => {
+    for (let k = 0; k < count; k++) sharpness.frame((now_ms += each_ms));
+  };
+  frames(50, 60);
+  assert.equal(sharpness.ratio, 0.8);
+  frames(600, 60);
+  assert.equal(sharpness.ratio, 0.5);
+  frames(50, 5000);
+  assert.equal(sharpness.ratio, 0.5);
+  frames(600, 10);
+  assert.equal(sharpness.ratio, 1);
+});
