@@ -10,18 +10,21 @@ from collections.abc import Sequence
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from fmpy.validation import validate_fmu  # type: ignore[import-untyped]
 
 from .. import hmi_texts
 from ..build_version import build_version
-from ..cosim.kinds import NATIVE_FOLDER, PARTS_IN_TRAFFIC
+from ..cosim.kinds import NATIVE_FOLDER, PARTS_IN_TRAFFIC, WASM_FOLDER
 from ..cosim.master import unpacked
 from ..cosim.platforms import PLATFORMS
 from ..errors import ModelError
 from .builder import Announce, Package, Recipe, build
 from .packages import write_packages, write_sources
+
+if TYPE_CHECKING:
+    from .native.archives import NativeRecipe
 
 HERE: Final = Path(__file__).resolve().parent
 RUNTIME: Final = HERE / "runtime"
@@ -122,37 +125,70 @@ def build_native(name: str, out: Path, targets: Sequence[str], announce: Announc
     Raises:
         ValueError: the extra is not installed, the build fails, or fmpy finds a problem.
     """
+    require_extra("native FMUs need")
+    from .native import archives  # noqa: PLC0415 - needs the extra
+
+    recipe = _native_recipe(name)
+    chosen = [t for platform in targets or PLATFORMS for t in PLATFORMS[platform]]
+    paths = archives.build_native(recipe, chosen, out / NATIVE_FOLDER, announce)
+    announce("validate")
+    require_valid(paths)
+    return paths
+
+
+def build_wasm(name: str, out: Path, announce: Announce) -> list[Path]:
+    """Build one FMU for a page in a browser: ``NAME.wasm`` and ``NAME.xml`` in ``out/wasm``.
+
+    Args:
+        name: a key of ``FMUS``.
+        out: folder of the Python FMUs.
+        announce: hears what is being done.
+
+    Raises:
+        ValueError: the extra is not installed, or the build fails.
+    """
+    require_extra("WebAssembly needs")
+    from .native import wasm  # noqa: PLC0415 - needs the extra
+
+    return wasm.build_wasm(_native_recipe(name), out / WASM_FOLDER, announce)
+
+
+def require_extra(what_needs: str) -> None:
+    """Raise ValueError unless the compilers of the extra are installed."""
     absent = [module for module in EXTRA if find_spec(module) is None]
     if absent:
-        raise ValueError(f"native FMUs need {', '.join(absent)}; {NEEDS_EXTRA}")
-    from vehicle_models.native import (  # noqa: PLC0415 - needs the extra
+        raise ValueError(f"{what_needs} {', '.join(absent)}; {NEEDS_EXTRA}")
+
+
+def _native_recipe(name: str) -> NativeRecipe:
+    from .native.archives import NativeRecipe  # noqa: PLC0415 - needs the extra
+
+    packed = FMUS[name]
+    return NativeRecipe(
+        NATIVE[name],
+        RUNTIME,
+        native_resources(name),
+        documented_class(packed.script),
+        packed.icon,
+        packed.version,
+    )
+
+
+def native_resources(name: str) -> dict[str, bytes]:
+    """Return what native code reads below ``resources/``: files by path."""
+    from vehicle_models.native import (  # noqa: PLC0415 - brings numba
         packed_scripts,
         packed_traffic_scripts,
     )
 
     from ..cosim.prepared import packed_files  # noqa: PLC0415
-    from .native import archives  # noqa: PLC0415
 
     resources = packed_files()
     if name == "ScriptedDriver":
         resources |= packed_scripts()
     elif name == "LeadVehicle":
         resources |= packed_traffic_scripts()
-    packed = FMUS[name]
-    resources |= packed.resources
-    recipe = archives.NativeRecipe(
-        NATIVE[name],
-        RUNTIME,
-        resources,
-        documented_class(packed.script),
-        packed.icon,
-        packed.version,
-    )
-    chosen = [t for platform in targets or PLATFORMS for t in PLATFORMS[platform]]
-    paths = archives.build_native(recipe, chosen, out / NATIVE_FOLDER, announce)
-    announce("validate")
-    require_valid(paths)
-    return paths
+    return {**resources, **FMUS[name].resources}
 
 
 def require_valid(paths: Sequence[Path]) -> None:

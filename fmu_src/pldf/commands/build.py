@@ -18,7 +18,9 @@ EXAMPLE: Final = (
     "      all FMUs for all platforms, into dist/native: the first time takes minutes, later "
     "seconds\n"
     "  pldf build --native --target linux64 --only AdaptivePLDF\n"
-    "      the quick way to see whether a changed kernel still compiles"
+    "      the quick way to see whether a changed kernel still compiles\n"
+    "  pldf build --wasm\n"
+    "      all FMUs as WebAssembly, for a page in a browser, into dist/wasm"
 )
 
 
@@ -36,6 +38,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--native",
         action="store_true",
         help="FMUs without Python instead: FMI 2.0 into OUT/native, FMI 3.0 into OUT/native/fmi3",
+    )
+    parser.add_argument(
+        "--wasm",
+        action="store_true",
+        help="FMUs for a page in a browser instead: NAME.wasm and NAME.xml into OUT/wasm",
     )
     parser.add_argument(
         "--target",
@@ -58,13 +65,17 @@ def run(options: argparse.Namespace) -> None:
     """Build and validate; ends with ModelError unless every FMU and package is valid."""
     if options.target and not options.native:
         options.refuse("--target goes with --native")
+    if options.wasm and options.native:
+        options.refuse("--wasm and --native make different files: run pldf build twice")
+    if options.wasm and options.ssp_sources:
+        options.refuse("--ssp-sources does not go with --wasm: no package has modules for a page")
     from ..build import fmus  # noqa: PLC0415 - brings pythonfmu and fmpy
 
     made: list[Path] = []
     names = [options.only] if options.only else list(fmus.FMUS)
     for number, name in enumerate(names, start=1):
         made += _build(f"[{number}/{len(names)}] {name}", name, options)
-    if not options.only:
+    if not options.only and not options.wasm:
         folder = options.out / NATIVE_FOLDER if options.native else options.out
         written = fmus.build_packages(folder, made, options.ssp_sources)
         if written:
@@ -78,7 +89,9 @@ def _build(label: str, name: str, options: argparse.Namespace) -> list[Path]:
 
     work = WorkLog(label)
     try:
-        if options.native:
+        if options.wasm:
+            paths = fmus.build_wasm(name, options.out, work.begin)
+        elif options.native:
             paths = fmus.build_native(name, options.out, options.target, work.begin)
         else:
             paths = fmus.build_python(name, options.out, work.begin)

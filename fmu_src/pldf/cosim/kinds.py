@@ -9,6 +9,8 @@ Kind = Literal["native", "python"]
 KINDS: Final[tuple[Kind, ...]] = ("native", "python")
 # Where the native FMUs are: in the folder of the Python ones.
 NATIVE_FOLDER: Final = "native"
+# And those for a page in a browser.
+WASM_FOLDER: Final = "wasm"
 USUAL_FOLDER: Final = Path("dist")
 # The vehicle comes first: the function plans its first outputs from where the vehicle is.
 PARTS: Final = {

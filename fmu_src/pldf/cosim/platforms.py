@@ -15,6 +15,9 @@ class Target(NamedTuple):
         suffix: of a shared library.
         fmi2: folder below ``binaries/`` in FMI 2 archives; empty: FMI 2 knows no such platform.
             Two targets with one folder are joined there in one universal library.
+        relocation: how LLVM's code finds its data.
+        code_model: how far away that may be.
+        inlined: all of a kernel in its entry points: faster, and several times as long.
     """
 
     triple: str
@@ -22,6 +25,9 @@ class Target(NamedTuple):
     linker: str
     suffix: str
     fmi2: str
+    relocation: str = "pic"
+    code_model: str = "small"
+    inlined: bool = True
 
 
 # By the name of the folder below ``binaries/`` in FMI 3 archives.
@@ -48,4 +54,12 @@ PLATFORMS: Final = {
     "win64": ("x86_64-windows",),
     "darwin64": ("x86_64-darwin", "aarch64-darwin"),
     "aarch64-linux": ("aarch64-linux",),
+}
+# Not a platform of importers but the one of pages (``pldf build --wasm``).
+WASM: Final = "wasm32"
+COMPILED: Final = {
+    **TARGETS,
+    WASM: Target(
+        "wasm32-unknown-wasi", "generic", "wasm32-wasi", ".wasm", "", "static", "default", False
+    ),
 }

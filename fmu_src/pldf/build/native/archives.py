@@ -22,7 +22,7 @@ from ..builder import Announce, license_of
 from ..description3 import model_description3
 from ..documentation import as_machine_code, document
 from .language import check_language
-from .linking import FLAGS, HEADERS, link, universal
+from .linking import FLAGS, HEADERS, LINKED_AS, link, universal
 from .model import NativeModel
 from .objects import compile_objects
 from .symbols import check_library
@@ -34,6 +34,9 @@ _TEXTS: Final = {
     "script_file": "Script prepared by 'pldf script FILE --export OUT.prepared', "
     "in place of script_id",
 }
+
+
+Describe = Callable[[Model, Mapping[str, str]], Element]
 
 
 class _Standard(NamedTuple):
@@ -50,7 +53,7 @@ class _Standard(NamedTuple):
     version: str
     place: str
     icon: str
-    describe: Callable[[Model, Mapping[str, str]], Element]
+    describe: Describe
     folder: Callable[[str], str]
 
 
@@ -102,12 +105,12 @@ def build_native(
     check_language(model.modules, model.record)
     objects = compile_objects(recipe.model, targets)
     contents = [_contents(recipe, model, standard, targets) for standard in (_FMI2, _FMI3)]
-    inner = {**_inner(recipe, model), **objects}
+    inner = {**made_of(recipe, model), **objects}
     guid, token = (guid_of({**members, **inner}) for members in contents)
     libraries = {}
     with tempfile.TemporaryDirectory(prefix="native_") as temporary:
         folder = Path(temporary)
-        _write_tables(folder, header(model), source(model, guid, token))
+        write_tables(folder, header(model), source(model, guid, token))
         for target in targets:
             announce(f"link {target}")
             (folder / f"{target}.o").write_bytes(objects[target])
@@ -129,7 +132,8 @@ def _written(folder: Path, name: str, members: Mapping[str, bytes]) -> Path:
     return path
 
 
-def _write_tables(folder: Path, head: str, body: str) -> None:
+def write_tables(folder: Path, head: str, body: str) -> None:
+    """Write what the C runtime is compiled with."""
     (folder / "table.h").write_text(head, encoding="utf-8", newline="\n")
     (folder / "table.c").write_text(body, encoding="utf-8", newline="\n")
 
@@ -153,12 +157,12 @@ def _binaries(standard: _Standard, name: str, libraries: Mapping[str, bytes]) ->
     return libraries_at
 
 
-def _inner(recipe: NativeRecipe, model: NativeModel) -> dict[str, bytes]:
+def made_of(recipe: NativeRecipe, model: NativeModel) -> dict[str, bytes]:
     """Return what else decides the bytes of a library, besides the objects."""
     headers = [*HEADERS.glob("fmi[23]*.h")]
     files = {path.name: path.read_bytes() for path in (*headers, *recipe.runtime.glob("*.[ch]"))}
     tables = header(model) + source(model, "", "")
-    tool = f"ziglang {metadata.version('ziglang')} {' '.join(FLAGS)}"
+    tool = f"ziglang {metadata.version('ziglang')} {FLAGS} {LINKED_AS}"
     return {**files, "table": tables.encode(), "tool": tool.encode()}
 
 
@@ -166,19 +170,13 @@ def _contents(
     recipe: NativeRecipe, model: NativeModel, standard: _Standard, targets: Sequence[str]
 ) -> dict[str, bytes]:
     """Return the archive without libraries, and without GUID or token."""
-    shown = tuple(_as_native(signal) for signal in signals(model))
-    about = Model(model.name, model.about, shown, 300.0, native=True)
-    root = standard.describe(about, LOG_CATEGORIES)
-    tool = f"{root.get('generationTool')} {native_making()}"
-    root.set("generationTool", tool)  # by which ``cosim.which_fmus`` knows older ones
-    indent(root)
-    description: Any = tostring(root, encoding="UTF-8", xml_declaration=True)
+    shown = _shown(model)
     licenses = dict(_licenses(targets))
     platforms = ", ".join(_folders(standard, targets))
     running = as_machine_code(standard.version, platforms, tuple(licenses))
     page = document(model.name, model.about, recipe.guide, shown, running)
     members = {
-        DESCRIPTION: description,
+        DESCRIPTION: description(model, standard.describe),
         standard.icon: recipe.icon.read_bytes(),
         "documentation/index.html": page.encode(),
         "documentation/licenses/license.txt": license_of("adaptive-pldf"),
@@ -186,6 +184,22 @@ def _contents(
         **{f"resources/{place}": data for place, data in recipe.resources.items()},
     }
     return with_version(members, recipe.version)
+
+
+def description(model: NativeModel, describe: Describe = model_description) -> bytes:
+    """Return the model description of a native FMU, without GUID or token and version."""
+    root = describe(
+        Model(model.name, model.about, _shown(model), 300.0, native=True), LOG_CATEGORIES
+    )
+    tool = f"{root.get('generationTool')} {native_making()}"
+    root.set("generationTool", tool)  # by which ``cosim.which_fmus`` knows older ones
+    indent(root)
+    text: Any = tostring(root, encoding="UTF-8", xml_declaration=True)
+    return bytes(text)
+
+
+def _shown(model: NativeModel) -> tuple[Signal, ...]:
+    return tuple(_as_native(signal) for signal in signals(model))
 
 
 def _as_native(signal: Signal) -> Signal:

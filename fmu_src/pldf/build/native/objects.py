@@ -30,7 +30,7 @@ import numba
 
 from ...cache import user_cache
 from ...compiled import OPTIONS, compile_modules, pack
-from ...cosim.platforms import TARGETS
+from ...cosim.platforms import COMPILED
 from ...files.disk import replace_file
 from .symbols import needed_by_object
 
@@ -55,7 +55,10 @@ def compile_objects(model: str, targets: Sequence[str]) -> dict[str, bytes]:
     if not missing:
         return objects
     with tempfile.TemporaryDirectory(prefix="native_") as folder:
-        _compile(model, Path(folder), missing)
+        for inlined in (True, False):
+            group = [target for target in missing if COMPILED[target].inlined == inlined]
+            if group:
+                _compile(model, Path(folder), group, inlined)
         made = {target: Path(folder, f"{target}.o").read_bytes() for target in missing}
     with suppress(OSError):  # compiled anew next time: slower, not wrong
         cache.mkdir(parents=True, exist_ok=True)
@@ -64,7 +67,7 @@ def compile_objects(model: str, targets: Sequence[str]) -> dict[str, bytes]:
     return {**objects, **made}
 
 
-def _compile(model: str, folder: Path, targets: Sequence[str]) -> None:
+def _compile(model: str, folder: Path, targets: Sequence[str], inlined: bool) -> None:
     # The same code whatever processor builds it, and none from somebody's cache. Where colorama is
     # installed, numba paints its messages, in which the line of a kernel is looked for.
     generic = {
@@ -72,6 +75,7 @@ def _compile(model: str, folder: Path, targets: Sequence[str]) -> None:
         "NUMBA_CPU_FEATURES": "",
         "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1",
         "PLDF_CACHE": str(folder),
+        **({} if inlined else {"NUMBA_OPT": "0"}),  # numba's own passes inline, too
     }
     kept = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")}
     program = [sys.executable, "-W", "ignore", "-m", __name__, model, str(folder), *targets]
@@ -131,21 +135,26 @@ def _llvm_texts(model: Any) -> list[str]:
 def _emit(texts: Sequence[str], target: str, entries: Sequence[str]) -> bytes:
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
-    machine = llvm.Target.from_triple(TARGETS[target].triple).create_target_machine(
-        cpu=TARGETS[target].cpu, opt=3, reloc="pic", codemodel="small"
+    where = COMPILED[target]
+    machine = llvm.Target.from_triple(where.triple).create_target_machine(
+        cpu=where.cpu, opt=3, reloc=where.relocation, codemodel=where.code_model
     )
     whole = None
     for text in texts:
-        module = llvm.parse_assembly(_retarget(text, TARGETS[target].triple, machine))
+        module = llvm.parse_assembly(_retarget(text, where.triple, machine))
         if whole is None:
             whole = module
         else:
             whole.link_in(module)
     assert whole is not None
-    _hide_all_but(whole, {f"model_{entry}" for entry in entries})
-    options = llvm.create_pipeline_tuning_options(speed_level=3)
+    attribute = "alwaysinline" if where.inlined else "optsize"
+    _hide_all_but(whole, {f"model_{entry}" for entry in entries}, attribute)
+    options = llvm.create_pipeline_tuning_options(speed_level=3 if where.inlined else 2)
     builder = llvm.create_pass_builder(machine, options)
-    builder.getModulePassManager().run(whole, builder)
+    # What is not inlined takes a second run: the first finds out that no function fails, so that
+    # the second can drop all that would tell Python.
+    for _ in range(1 if where.inlined else 2):
+        builder.getModulePassManager().run(whole, builder)
     data = bytes(machine.emit_object(whole))
     _check(data)
     return data
@@ -157,7 +166,7 @@ def _retarget(text: str, triple: str, machine: Any) -> str:
     return re.sub(r'target datalayout = "[^"]*"', layout, text)
 
 
-def _hide_all_but(module: Any, visible: set[str]) -> None:
+def _hide_all_but(module: Any, visible: set[str], attribute: str) -> None:
     defined = [t for t in (*module.functions, *module.global_variables) if not t.is_declaration]
     missing = visible - {thing.name for thing in defined}
     if missing:
@@ -167,8 +176,8 @@ def _hide_all_but(module: Any, visible: set[str]) -> None:
             thing.visibility = "hidden"  # for the C runtime, not for the host
         else:
             thing.linkage = "internal"
-            if thing.is_function:  # what is known in one function helps in the others
-                thing.add_function_attribute("alwaysinline")
+            if thing.is_function:  # alwaysinline: what is known in one helps in the others
+                thing.add_function_attribute(attribute)
             thing.name = f"inner_{number}"  # numba's own names hold the record's whole layout
 
 

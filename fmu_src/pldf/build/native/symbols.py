@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final
 
 import lief
 
+from . import web_assembly
 from .linking import HEADERS
 
 lief.logging.disable()
@@ -20,11 +22,15 @@ _SYSTEM: Final = re.compile(
 )
 # zig exports its own names of the library's head on macOS; each library may have them.
 _HEAD: Final = frozenset({"_mh_dylib_header", "__dso_handle"})
+# What the linker gives every object of WebAssembly.
+_OF_LINKER: Final = frozenset(
+    {"__indirect_function_table", "__linear_memory", "__memory_base", "__stack_pointer"}
+)
 
 
-def fmi_functions() -> set[str]:
-    """Return all functions of FMI 2.0 and FMI 3.0."""
-    texts = [(HEADERS / f"fmi{version}Functions.h").read_text() for version in (2, 3)]
+def fmi_functions(versions: Iterable[int] = (2, 3)) -> set[str]:
+    """Return all functions of these versions of FMI."""
+    texts = [(HEADERS / f"fmi{version}Functions.h").read_text() for version in versions]
     return {name for text in texts for name in _DECLARED.findall(text)}
 
 
@@ -49,6 +55,8 @@ def check_library(path: Path) -> None:
 
 def needed_by_object(data: bytes) -> set[str]:
     """Return the names that an object file leaves open."""
+    if web_assembly.is_module(data):
+        return web_assembly.imports(data) - _OF_LINKER
     parsed: Any = lief.COFF.parse(list(data)) if _is_coff(data) else lief.parse(data)
     if isinstance(parsed, lief.ELF.Binary):
         return {str(s.name) for s in parsed.symbols if s.shndx == 0 and s.name}

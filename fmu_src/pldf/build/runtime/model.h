@@ -12,8 +12,9 @@ typedef union {
     double real;
 } Cell;
 
-/* record, block of columns, number of nodes and of script lines, step in s */
-typedef void Entry(Cell *, double *, int64_t, int64_t, double);
+/* record, block of columns, number of nodes and of script lines, step in s. What numba makes of a function
+   that returns nothing returns a pointer, which means nothing: WebAssembly asks for the exact type. */
+typedef void *Entry(Cell *, double *, int64_t, int64_t, double);
 
 enum { KIND_REAL = 1, KIND_INTEGER = 2, KIND_BOOLEAN = 4, KIND_STRING = 8, KIND_ENUMERATION = 16 };
 enum { KIND_TIME = 32 }; /* what FMI 3.0 alone has; in no cell */

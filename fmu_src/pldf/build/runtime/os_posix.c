@@ -1,4 +1,4 @@
-#ifndef _WIN32
+#if !defined _WIN32 && !defined __wasm__
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <dlfcn.h>
