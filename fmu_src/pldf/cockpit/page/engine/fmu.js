@@ -1,263 +1,301 @@
-// An FMU as a module of WebAssembly: FMI 2.0 by names, with files and messages in memory.
+// FMUs as WebAssembly, called as FMI 2.0 says. Each instance has a module, memory and files of its own.
+
+import { Batch, KINDS } from "./batch.js";
+import { Module } from "./module.js";
 
 /** @typedef {import("../types.js").Files} Files */
 /** @typedef {import("../types.js").Model} Model */
 /** @typedef {import("../types.js").Value} Value */
 /** @typedef {import("../types.js").Variable} Variable */
 /** @typedef {{level: "info" | "warning" | "error", text: string}} Message */
-/** @typedef {any} Exports */
 
+const RESOURCES = "resources";
 const CO_SIMULATION = 1;
-const OK_MAX = 1;
-/** @type {Message["level"][]} */
-const LEVELS = ["info", "warning", "error", "error", "error", "info"];
-/** @type {Map<string, Promise<WebAssembly.Module>>} */
-const compiled = new Map();
+const FINE = 1; // OK and Warning are: Terminate warns if something was kept in another way
+const LEVELS = /** @type {const} */ (["info", "warning", "error", "error", "error"]);
 
-/** An FMU refused a call; its own words. */
-export class FmuError extends Error {}
+/** A call that an FMU refused; the text is what the FMU said. */
+export class FmuError extends Error {
+  /**
+   * @param {string} call
+   * @param {string} model
+   * @param {Message[]} messages since the call began
+   */
+  constructor(call, model, messages) {
+    const told = messages.filter((m) => m.level === "error").map((m) => m.text);
+    super(`${model}: ${told.join("; ") || `${call} failed`}`);
+    this.name = "FmuError";
+    this.call = call;
+    this.model = model;
+  }
+}
 
-/** A model that was compiled. */
+/** A model of which instances can be made. */
 export class Fmu {
+  /** @type {WebAssembly.Module} */
+  #compiled;
+
   /**
    * @param {Model} model
-   * @returns {Promise<Fmu>}
+   * @param {WebAssembly.Module} compiled
+   */
+  constructor(model, compiled) {
+    this.model = model;
+    this.#compiled = compiled;
+    this.variables = new Map(model.variables.map((v) => [v.name, v]));
+  }
+
+  /**
+   * @param {Model} model
+   * @throws {WebAssembly.CompileError} its bytes are no module
    */
   static async load(model) {
-    const bytes = /** @type {BufferSource} */ (model.wasm);
-    const module = compiled.get(model.guid) ?? WebAssembly.compile(bytes);
-    compiled.set(model.guid, module);
-    return new Fmu(model, await module);
+    const bytes = /** @type {Uint8Array<ArrayBuffer>} */ (model.wasm);
+    return new Fmu(model, await WebAssembly.compile(bytes));
   }
 
   /**
-   * @param {Model} model
-   * @param {WebAssembly.Module} module
+   * @param {string} name of the instance
+   * @param {Files} [files] besides the resources: what parameters such as `route_file` name
+   * @throws {FmuError} the FMU refuses
    */
-  constructor(model, module) {
-    this.model = model;
-    this.module = module;
-  }
-
-  /**
-   * @param {string} name
-   * @param {Files} files
-   */
-  instantiate(name, files) {
-    return new Instance(this.model, new WebAssembly.Instance(this.module, {}), name, files);
+  instantiate(name, files = {}) {
+    return new Instance(this, new Module(this.#compiled), name, files);
   }
 }
 
-/** Values of one kind in the module's memory. */
-export class Batch {
-  /**
-   * @param {Instance} instance
-   * @param {Variable[]} variables
-   */
-  constructor(instance, variables) {
-    this.instance = instance;
-    this.count = variables.length;
-    this.kind = variables[0].kind;
-    this.size = this.kind === "Real" ? 8 : 4;
-    this.references = instance.copied(Uint32Array.from(variables, (one) => one.reference));
-    this.at = instance.room(this.size * this.count);
-    this.buffer = new ArrayBuffer(0);
-    /** @type {Float64Array | Int32Array} */
-    this.view = new Int32Array(0);
-  }
-
-  get values() {
-    const { buffer } = this.instance.exports.memory;
-    if (buffer !== this.buffer) {
-      this.buffer = buffer;
-      const Kind = this.kind === "Real" ? Float64Array : Int32Array;
-      this.view = new Kind(buffer, this.at, this.count);
-    }
-    return this.view;
-  }
-
-  read() {
-    this.instance.call(`fmi2Get${this.kind}`, this.references, this.count, this.at);
-  }
-
-  write() {
-    this.instance.call(`fmi2Set${this.kind}`, this.references, this.count, this.at);
-  }
-}
-
-/** One instance in a memory of its own. */
+/** One FMU in a drive. Names of variables are those of the model description. */
 export class Instance {
+  #module;
+  #fmu;
+  #component = 0;
+  /** @type {Message[]} */
+  #told = [];
+
   /**
-   * @param {Model} model
-   * @param {WebAssembly.Instance} instance
+   * @param {Fmu} fmu
+   * @param {Module} module
    * @param {string} name
    * @param {Files} files
    */
-  constructor(model, instance, name, files) {
-    this.exports = /** @type {Exports} */ (instance.exports);
-    this.exports._initialize?.();
-    this.variables = new Map(model.variables.map((one) => [one.name, one]));
-    /** @type {Message[]} */
-    this.heard = [];
-    for (const [path, bytes] of Object.entries(files)) {
-      const at = this.copied(bytes);
-      this.exports.page_write(this.text(path), at, bytes.length);
+  constructor(fmu, module, name, files) {
+    this.#fmu = fmu;
+    this.#module = module;
+    for (const [path, bytes] of Object.entries(fmu.model.resources)) {
+      module.writeFile(`${RESOURCES}/${path}`, bytes);
     }
-    this.component = this.exports.fmi2Instantiate(
-      this.text(name),
-      CO_SIMULATION,
-      this.text(model.guid),
-      this.text("file:///resources"),
-      this.exports.page_callbacks(),
-      0,
-      1,
-    );
-    this.hear();
-    if (this.component === 0) {
-      throw new FmuError(this.words());
-    }
-  }
-
-  /** @param {number} size */
-  room(size) {
-    return this.exports.malloc(Math.max(8, size));
-  }
-
-  /** @param {Uint8Array | Uint32Array} data */
-  copied(data) {
-    const at = this.room(data.byteLength);
-    const bytes = new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
-    new Uint8Array(this.exports.memory.buffer, at, data.byteLength).set(bytes);
-    return at;
-  }
-
-  /** @param {string} text */
-  text(text) {
-    return this.copied(new TextEncoder().encode(`${text}\0`));
-  }
-
-  /** @param {number} at */
-  textAt(at) {
-    const bytes = new Uint8Array(this.exports.memory.buffer, at);
-    return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
-  }
-
-  /**
-   * @param {string} name
-   * @param {...number} given
-   */
-  call(name, ...given) {
-    const status = this.exports[name](this.component, ...given);
-    if (status !== 0) {
-      this.hear();
-      if (status > OK_MAX) {
-        throw new FmuError(this.words());
-      }
-    }
-  }
-
-  words() {
-    return this.heard.findLast((message) => message.level === "error")?.text ?? "";
-  }
-
-  hear() {
-    const status = this.room(4);
-    for (let at = this.exports.page_message(status); at !== 0; ) {
-      const level = LEVELS[new DataView(this.exports.memory.buffer).getInt32(status, true)];
-      this.heard.push({ level, text: this.textAt(at) });
-      at = this.exports.page_message(status);
-    }
-    this.exports.free(status);
-  }
-
-  messages() {
-    this.hear();
-    return this.heard;
-  }
-
-  /** @param {string[]} names */
-  batch(names) {
-    return new Batch(this, names.map((name) => this.variable(name)));
+    for (const [path, bytes] of Object.entries(files)) module.writeFile(path, bytes);
+    this.#component = this.#instantiate(name);
+    if (this.#component === 0) throw this.#refused("fmi2Instantiate");
+    this.doStep = module.exported("fmi2DoStep");
   }
 
   /** @param {string} name */
-  variable(name) {
-    const variable = this.variables.get(name);
-    if (variable === undefined) {
-      throw new FmuError(`there is no variable ${name}`);
+  #instantiate(name) {
+    const module = this.#module;
+    const callbacks = module.call("page_callbacks");
+    return module.lendText(name, (named) =>
+      module.lendText(this.#fmu.model.guid, (guid) =>
+        module.lendText(RESOURCES, (resources) =>
+          module.call("fmi2Instantiate", named, CO_SIMULATION, guid, resources, callbacks, 0, 1),
+        ),
+      ),
+    );
+  }
+
+  /** @param {string} call */
+  #refused(call) {
+    const before = this.#told.length;
+    this.#collect();
+    return new FmuError(call, this.#fmu.model.name, this.#told.slice(before));
+  }
+
+  #collect() {
+    const status = this.#module.allocate(4);
+    for (let text = 0; (text = this.#module.call("page_message", status)) !== 0; ) {
+      const level = LEVELS[this.#module.uint32(status)];
+      this.#told.push({ level, text: this.#module.text(text) });
     }
-    return variable;
+    this.#module.free(status);
+  }
+
+  /**
+   * @param {string} call
+   * @param {...number} values behind the instance
+   */
+  #must(call, ...values) {
+    if (this.#module.call(call, this.#component, ...values) > FINE) throw this.#refused(call);
   }
 
   /**
    * @param {string} name
-   * @returns {Value}
+   * @returns {Variable}
    */
-  get(name) {
-    const batch = this.batch([name]);
-    batch.read();
-    if (batch.kind === "String") {
-      const text = this.textAt(batch.values[0]);
-      this.exports.free(batch.at);
-      this.exports.free(batch.references);
-      return text;
-    }
-    return batch.kind === "Boolean" ? batch.values[0] !== 0 : batch.values[0];
+  variable(name) {
+    const found = this.#fmu.variables.get(name);
+    if (!found) throw new RangeError(`${this.#fmu.model.name} has no variable ${name}`);
+    return found;
   }
 
   /**
    * @param {string} name
    * @param {Value} value
+   * @throws {FmuError} the FMU refuses it
    */
   set(name, value) {
+    const variable = this.variable(name);
+    if (variable.kind === "String") return this.#setText(variable, String(value));
     const batch = this.batch([name]);
-    batch.values[0] = batch.kind === "String" ? this.text(String(value)) : Number(value);
-    batch.write();
-  }
-
-  /** @param {Record<string, Value>} values */
-  setAll(values) {
-    for (const [name, value] of Object.entries(values)) {
-      this.set(name, value);
+    batch.values[0] = Number(value);
+    try {
+      batch.write();
+    } finally {
+      batch.free();
     }
   }
 
-  enterInitialization() {
-    this.call("fmi2SetupExperiment", 0, 0, 0, 0, 0);
-    this.call("fmi2EnterInitializationMode");
-  }
-
-  exitInitialization() {
-    this.call("fmi2ExitInitializationMode");
+  /** @param {Record<string, Value>} values by name */
+  setAll(values) {
+    for (const [name, value] of Object.entries(values)) this.set(name, value);
   }
 
   /**
-   * @param {number} time_s
+   * @param {string} name
+   * @returns {Value} a boolean of a Boolean, a code of an enumeration
+   */
+  get(name) {
+    const variable = this.variable(name);
+    if (variable.kind === "String") return this.#text(variable);
+    const batch = this.batch([name]);
+    try {
+      batch.read();
+      return variable.kind === "Boolean" ? batch.values[0] !== 0 : batch.values[0];
+    } finally {
+      batch.free();
+    }
+  }
+
+  /**
+   * @param {Variable} variable
+   * @param {string} text
+   */
+  #setText(variable, text) {
+    const [reference, value] = [this.#numbers(variable.reference), this.#numbers(0)];
+    try {
+      this.#module.lendText(text, (address) => {
+        new DataView(this.#module.memory.buffer).setUint32(value, address, true);
+        this.#must("fmi2SetString", reference, 1, value);
+      });
+    } finally {
+      this.#module.free(reference);
+      this.#module.free(value);
+    }
+  }
+
+  /** @param {Variable} variable */
+  #text(variable) {
+    const [reference, value] = [this.#numbers(variable.reference), this.#numbers(0)];
+    try {
+      this.#must("fmi2GetString", reference, 1, value);
+      return this.#module.text(this.#module.uint32(value));
+    } finally {
+      this.#module.free(reference);
+      this.#module.free(value);
+    }
+  }
+
+  /** @param {...number} values whole ones */
+  #numbers(...values) {
+    const address = this.#module.allocate(4 * values.length);
+    new Uint32Array(this.#module.memory.buffer, address, values.length).set(values);
+    return address;
+  }
+
+  /**
+   * Several numbers of one kind that are read or written at once, without copies.
+   * @param {string[]} names all Real, or all Integer, or all Boolean
+   * @returns {Batch}
+   */
+  batch(names) {
+    const variables = names.map((name) => this.variable(name));
+    const kind = variables[0]?.kind ?? "Real";
+    const other = variables.find((v) => v.kind !== kind || !(kind in KINDS));
+    if (other) throw new RangeError(`${other.name} is ${other.kind}, in a batch of ${kind}`);
+    const references = variables.map((v) => v.reference);
+    return new Batch(this.#module, this.#component, kind, references, (call) => this.#refused(call));
+  }
+
+  /** @param {number} [start_s] */
+  enterInitialization(start_s = 0) {
+    this.#must("fmi2SetupExperiment", 0, 0, start_s, 0, 0);
+    this.#must("fmi2EnterInitializationMode");
+  }
+
+  exitInitialization() {
+    this.#must("fmi2ExitInitializationMode");
+  }
+
+  /**
+   * @param {number} time_s at which the step begins
    * @param {number} step_s
    */
   step(time_s, step_s) {
-    this.call("fmi2DoStep", time_s, step_s, 1);
+    if (this.doStep(this.#component, time_s, step_s, 1) > FINE) throw this.#refused("fmi2DoStep");
   }
 
+  /** End the drive: what it taught is in `files()` then. */
   terminate() {
-    this.call("fmi2Terminate");
+    this.#must("fmi2Terminate");
   }
 
-  /** @returns {Files} */
+  /** Give the instance back; nothing can be asked of it any more. */
+  free() {
+    this.#module.call("fmi2FreeInstance", this.#component);
+    this.#component = 0;
+  }
+
+  /** @returns {Files} all but the resources, by path */
   files() {
-    /** @type {Files} */
-    const files = {};
-    const size = this.room(4);
-    for (let index = 0; ; index += 1) {
-      const path = this.exports.page_path(index);
-      if (path === 0) {
-        return files;
-      }
-      const at = this.exports.page_read(path, size);
-      const length = new DataView(this.exports.memory.buffer).getUint32(size, true);
-      if (at !== 0) {
-        files[this.textAt(path)] = new Uint8Array(this.exports.memory.buffer, at, length).slice();
-      }
+    const all = Object.entries(this.#module.readFiles());
+    return Object.fromEntries(all.filter(([path]) => !path.startsWith(`${RESOURCES}/`)));
+  }
+
+  /** @returns {Message[]} all that the FMU said so far, oldest first */
+  messages() {
+    this.#collect();
+    return [...this.#told];
+  }
+
+  /** @returns {Uint8Array} all that decides what follows, for `setState` */
+  getState() {
+    const state = this.#numbers(0, 0);
+    this.#must("fmi2GetFMUstate", state);
+    const saved = this.#module.uint32(state);
+    this.#must("fmi2SerializedFMUstateSize", saved, state + 4);
+    const size = this.#module.uint32(state + 4);
+    const bytes = this.#module.allocate(size);
+    this.#must("fmi2SerializeFMUstate", saved, bytes, size);
+    const copy = this.#module.bytes(bytes, size);
+    this.#must("fmi2FreeFMUstate", state);
+    this.#module.free(bytes);
+    this.#module.free(state);
+    return copy;
+  }
+
+  /**
+   * @param {Uint8Array} bytes of `getState` of an instance of the same model
+   * @throws {FmuError} they are damaged or of another model
+   */
+  setState(bytes) {
+    const state = this.#numbers(0);
+    try {
+      this.#module.lend(bytes, (address) =>
+        this.#must("fmi2DeSerializeFMUstate", address, bytes.length, state),
+      );
+      this.#must("fmi2SetFMUstate", this.#module.uint32(state));
+      this.#must("fmi2FreeFMUstate", state);
+    } finally {
+      this.#module.free(state);
     }
   }
 }

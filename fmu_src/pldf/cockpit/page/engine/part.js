@@ -1,7 +1,7 @@
 // One FMU in a drive: where the values of its inputs and outputs lie in its memory.
 
 /** @typedef {import("./fmu.js").Fmu} Fmu */
-/** @typedef {import("./fmu.js").Batch} Batch */
+/** @typedef {import("./batch.js").Batch} Batch */
 /** @typedef {import("../types.js").Files} Files */
 /** @typedef {import("../types.js").Value} Value */
 /** @typedef {import("../types.js").Variable} Variable */
