@@ -15,6 +15,7 @@ from pldf.cosim.fmu import Fmu
 from pldf.cosim.kinds import PARTS_IN_TRAFFIC
 from pldf.cosim.master import unpacked
 from pushed_cart import cart_recipe
+from wasm_host import wasm_modules
 
 # Run by test_wheel.py where the sources are out of reach.
 collect_ignore = ["wheel"]
@@ -62,6 +63,12 @@ def native_traffic_fmus(native_folder: Path) -> Iterator[dict[str, Fmu]]:
     """Return the three native FMUs and the car ahead, unpacked."""
     with unpacked(native_folder, PARTS_IN_TRAFFIC) as found:
         yield found
+
+
+@pytest.fixture(scope="session")
+def wasm_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with all FMUs as WebAssembly and their model descriptions."""
+    return wasm_modules(tmp_path_factory)
 
 
 @pytest.fixture(scope="session")

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from native_drives import CASES, Table, by_fmpy, by_source
+from native_drives import CASES, Table, by_fmpy, by_source, by_wasmtime
 from native_hosts import ON, PLATFORMS, Hosts, Unpacked
+from wasm_host import loaded
 
 FOLDER = "Profile Müller Ж 車"  # no file system or code page may mind
 
@@ -93,3 +94,15 @@ def test_native_fmu_in_a_host_without_python(
         hosts.run(platform, "replay", description, script, found, cwd=tmp_path)
         results.append(np.fromfile(found))
     assert outcome(results, store) == expected[name]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_web_assembly(name: str, wasm_folder: Path, expected: dict[str, Outcome]) -> None:
+    case, fmu = CASES[name], loaded(wasm_folder, CASES[name].model)
+    results, files = [], dict[str, bytes]()
+    for _ in range(case.drives):
+        table, files = by_wasmtime(fmu, case.script(), case.stored(f"/{FOLDER}"), files)
+        results.append(table)
+    assert all(path.startswith(f"{FOLDER}/") for path in files)
+    assert len(files) == int(case.learns)
+    assert ([table.tobytes() for table in results], b"".join(files.values())) == expected[name]

@@ -22,6 +22,7 @@ from pldf.function import DrivingFunction
 from pldf.instance import Instance
 from pldf.kernel.signals import variables_of
 from pldf.roads import packed_route
+from wasm_host import WasmFmu, WasmSlave
 
 from vehicle_models.driver import ScriptedDriver
 from vehicle_models.lead import LeadVehicle
@@ -257,6 +258,23 @@ def by_source(case: Case, script: Table, store: Path) -> Table:
 def by_fmpy(fmu: Unpacked, script: Table, settings: Mapping[str, Value]) -> Table:
     """Drive an FMU of either version in fmpy; return the results."""
     slave = started(fmu, settings)
+    results = driven(slave, fmu, script)
+    slave.freeInstance()
+    return results
+
+
+def by_wasmtime(
+    fmu: WasmFmu, script: Table, settings: Mapping[str, Value], files: Mapping[str, bytes]
+) -> tuple[Table, dict[str, bytes]]:
+    """Drive an FMU as WebAssembly; return the results and the files that it leaves."""
+    slave = WasmSlave(fmu, files)
+    slave.set_named(fmu, settings)
+    slave.initialize()
+    return driven(slave, fmu, script), slave.files()
+
+
+def driven(slave: Any, fmu: Unpacked | WasmFmu, script: Table) -> Table:
+    """Drive an instance that is initialized to the end; return the results."""
     inputs, outputs = (by_type(fmu, causality) for causality in ("input", "output"))
     results = [read(slave, outputs)]
     for time_s, step_s, *values in script.tolist():
@@ -268,7 +286,6 @@ def by_fmpy(fmu: Unpacked, script: Table, settings: Mapping[str, Value]) -> Tabl
             slave.doStep(time_s, step_s)
         results.append(read(slave, outputs))
     slave.terminate()
-    slave.freeInstance()
     return np.array(results, np.float64)
 
 
@@ -299,7 +316,7 @@ def setter(kind: str, version: int) -> str:
     return {"Enumeration": "Integer" if version == 2 else "Int64"}.get(kind, kind)
 
 
-def by_type(fmu: Unpacked, causality: str) -> dict[str, tuple[list[int], list[int]]]:
+def by_type(fmu: Unpacked | WasmFmu, causality: str) -> dict[str, tuple[list[int], list[int]]]:
     """Return places and value references of the variables with this causality, by type."""
     found: dict[str, tuple[list[int], list[int]]] = {}
     for place, variable in enumerate(fmu.variables(causality)):
