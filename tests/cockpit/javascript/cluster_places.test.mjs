@@ -90,11 +90,15 @@ test("what waits for more evidence is shown as that", () => {
   assert.equal(summary([], found), "You let the car drive by itself. Nothing is learned on this road yet. 2 more wait to be shown again.");
 });
 
-test("an older iteration can be looked at", () => {
-  const iterations = [iteration(0, []), iteration(1, pedal(50, 90, 8, 1)), iteration(2, [])];
+test("what pedals changed in the drive is a place, even within the set speed's part", () => {
+  const taught = /** @type {[string, number, number, number][]} */ ([
+    ["offset_mps", 0, 200, 10 * KMH], ["learned_mps", 0, 200, 10 * KMH], ["drive", 0, 200, 1],
+  ]);
+  const iterations = [iteration(0, []), iteration(1, taught), iteration(2, [...taught, ...pedal(50, 90, 6, 2)])];
   const profile = { driver_id: 7, route: "", nodes: NODES, iterations };
-  assert.equal(placesOf(profile, LIMIT_MPS, 1).length, 1);
-  assert.equal(placesOf(profile, LIMIT_MPS).length, 0);
+  const at = (/** @type {number} */ known) => placesOf(profile, LIMIT_MPS, known).map((place) => [place.by, place.from_m, place.to_m]);
+  assert.deepEqual(at(1), [["lever", 0, 199], ["pedal", 50, 89]]);
+  assert.deepEqual(at(2), [["lever", 0, 199]]);
 });
 
 test("runs are of one value other than nought", () => {

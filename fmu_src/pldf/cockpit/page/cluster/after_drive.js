@@ -47,21 +47,22 @@ export class AfterDrive {
     const nodes = road.nodes;
     this.interventions = interventionsOf(frames);
     this.profile = after && readProfile(after);
-    this.places = this.profile ? placesOf(this.profile, road.limit_mps) : [];
+    this.known = before ? iterationOf(readProfile(before)).number : 0;
+    this.places = this.profile ? this.placesIn(this.profile) : [];
     this.driven = perMetre(frames, nodes);
     this.planned = perMetre(frames, nodes, "base_speed_mps");
-    const known = before ? iterationOf(readProfile(before)).number : 0;
-    this.list = new PlaceList(this.places, unit, known, {
+    this.list = new PlaceList(this.places, unit, this.known, {
       choose: (place) => this.choose(place),
       change: drive.forget && ((forgotten) => this.forget(forgotten)),
     });
     this.map = new RouteMap(road, words("map", { count: this.places.length }));
     const plot = element("div", { class: "after-plot" });
+    this.summary = element("p", { "class": "after-summary", "aria-live": "polite" });
     this.error = element("p", { class: "after-error", role: "alert" });
     this.root = element(
       "section", { class: "after" },
       element("h2", {}, words("title")),
-      element("p", { "class": "after-summary", "aria-live": "polite" }, summary(this.interventions, this.places)),
+      this.summary,
       element("div", { class: "after-map" }, this.map.drawing, legend()),
       plot, this.error, this.list.root,
     );
@@ -73,7 +74,7 @@ export class AfterDrive {
   /** @param {Profile | null} profile as it is now */
   show(profile) {
     const { road } = this.drive;
-    const left = profile ? placesOf(profile, road.limit_mps) : [];
+    const left = profile ? this.placesIn(profile) : [];
     const gone = (/** @type {Place} */ place) => !left.some((other) => isSame(place, other));
     const newest = profile && iterationOf(profile);
     this.plot.show(
@@ -85,8 +86,14 @@ export class AfterDrive {
       },
       this.interventions, this.places,
     );
+    fill(this.summary, summary(this.interventions, left));
     this.map.show(this.places, gone);
     this.list.show(gone);
+  }
+
+  /** @param {Profile} profile @returns {Place[]} */
+  placesIn(profile) {
+    return placesOf(profile, this.drive.road.limit_mps, this.known);
   }
 
   /** @param {Place | null} place */

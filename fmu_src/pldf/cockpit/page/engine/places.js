@@ -25,16 +25,18 @@ const SHOWN_MPS = 1 / 3.6;
  */
 
 /**
- * Return the places of a profile, by distance.
+ * Return the places of a profile as it is now, by distance.
  * @param {Profile} profile
  * @param {Float64Array} limit_mps legal limit per cell: what the lever taught holds for one limit
- * @param {number} [number] of the iteration; the newest if there is none
+ * @param {number} [known] number of the last iteration before the drive that is looked at; without it
+ *   no lesson is a new one
  * @returns {Place[]}
  */
-export function placesOf(profile, limit_mps, number) {
-  const iteration = iterationOf(profile, number);
+export function placesOf(profile, limit_mps, known = profile.iterations.length - 1) {
+  const iteration = iterationOf(profile);
+  const before = columnOf(iterationOf(profile, known), "learned_mps");
   const places = [
-    ...pedalPlaces(iteration), ...leverPlaces(profile, iteration, limit_mps),
+    ...pedalPlaces(iteration, before, known), ...leverPlaces(profile, iteration, limit_mps),
     ...waitingPlaces(iteration),
   ].map((found) => ({ ...found, limit_mps: at(limit_mps, Math.min(found.at_m, limit_mps.length - 1)) }));
   return places.sort((a, b) => a.from_m - b.from_m || a.to_m - b.to_m);
@@ -43,12 +45,14 @@ export function placesOf(profile, limit_mps, number) {
 /** @typedef {Omit<Place, "limit_mps">} Found */
 
 /**
- * Return where pedals taught more than what the learned set speed does: that alone moves the plan by
- * its offset at most.
+ * Return where pedals taught more than what the learned set speed does, which moves the plan by its
+ * offset at most; and where they changed anything in the drive that is looked at.
  * @param {Iteration} iteration
+ * @param {Float64Array} before learned speeds before that drive
+ * @param {number} known number of the last iteration before it
  * @returns {Found[]}
  */
-function pedalPlaces(iteration) {
+function pedalPlaces(iteration, before, known) {
   const [learned, base] = speeds(iteration);
   const drive = columnOf(iteration, "drive");
   const byPedal = columnOf(iteration, "intervention");
@@ -56,8 +60,10 @@ function pedalPlaces(iteration) {
   const change = learned.map((speed, i) => speed - at(base, i));
   const sign = change.map((mps, i) => {
     const [low, high] = [Math.min(at(offset, i), 0), Math.max(at(offset, i), 0)];
-    const apart = mps < low - SHOWN_MPS || mps > high + SHOWN_MPS;
-    return apart && at(drive, i) > 0 && at(byPedal, i) > 0 ? Math.sign(mps) : 0;
+    const beyond = mps < low - SHOWN_MPS || mps > high + SHOWN_MPS;
+    const changed = at(drive, i) > known && Math.abs(at(learned, i) - at(before, i)) > SHOWN_MPS;
+    const taught = at(drive, i) > 0 && at(byPedal, i) > 0 && Math.abs(mps) > SHOWN_MPS;
+    return taught && (beyond || changed) ? Math.sign(mps) : 0;
   });
   return runs(sign).map(([from, to]) => ({
     ...place("pedal", iteration, change, from, to),
