@@ -28,7 +28,7 @@ export class Drive {
    * @param {DriveBundle} bundle
    * @param {DriveSetup} setup
    * @returns {Promise<Drive>}
-   * @throws {import("./fmu.js").FmuError} an FMU refused a value or a call
+   * @throws {import("./fmu_error.js").FmuError} an FMU refused a value or a call
    */
   static async begin(bundle, setup) {
     /** @type {Map<Part, Fmu>} */

@@ -17,7 +17,7 @@ const LISTENING = Object.freeze({ learn: 0, apply_learned: true, profile_store: 
  * @param {DriveSetup} setup its profiles, its values of the function
  * @param {number[]} places_m
  * @returns {Promise<Files>}
- * @throws {import("./fmu.js").FmuError} the function refused a value or a call
+ * @throws {import("./fmu_error.js").FmuError} the function refused a value or a call
  */
 export async function forgetPlaces(bundle, setup, places_m) {
   let { profiles } = setup;
@@ -32,7 +32,7 @@ export async function forgetPlaces(bundle, setup, places_m) {
  * @param {DriveBundle} bundle
  * @param {DriveSetup} setup
  * @returns {Promise<Files>}
- * @throws {import("./fmu.js").FmuError} the function refused a value or a call
+ * @throws {import("./fmu_error.js").FmuError} the function refused a value or a call
  */
 export async function undoLesson(bundle, setup) {
   return pressed(bundle, setup, "teach.undo", 0);
