@@ -101,6 +101,7 @@ function rest(session) {
       fill(left, left_s > 0 ? say("break_left", clock(left_s)) : say("break_over"));
     };
     const over = () => {
+      next.disabled = true; // a second click must not end what comes next
       clearInterval(timer);
       const left_s = Math.round((ends_ms - Date.now()) / 1000);
       if (left_s > 0) {
