@@ -5,7 +5,7 @@ import { speak } from "./language.js";
 import { loadBundle } from "./engine/bundle.js";
 import { roadOf } from "./engine/road.js";
 import { Live } from "./cluster/live.js";
-import { showPage, showProblem } from "./session/app.js";
+import { showPage, showProblem, toldBy } from "./session/app.js";
 import { guide } from "./session/guided.js";
 import { home } from "./session/home.js";
 import { chosenLanguage } from "./session/languages.js";
@@ -66,8 +66,7 @@ async function start() {
 
 /** @param {unknown} problem that nobody expected: said beside what is shown, which may still work */
 function told(problem) {
-  const text = problem instanceof Error ? problem.message : String(problem);
-  const words = `${say("problem_title")}: ${text}. ${say("problem_way_out")}`;
+  const words = `${say("problem_title")}: ${toldBy(problem)}. ${say("problem_way_out")}`;
   document.body.append(element("p", { class: "banner", role: "alert" }, words));
 }
 

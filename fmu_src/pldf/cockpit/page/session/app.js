@@ -1,6 +1,7 @@
 // What all screens of the session know, and how one takes the place of another.
 
 import { element, fill } from "../dom.js";
+import { NoWebGLError } from "../view/view.js";
 import { say } from "./words.js";
 
 /** @typedef {import("../types.js").Bundle} Bundle */
@@ -88,17 +89,21 @@ export function laboratoryText(html) {
  * @param {unknown} problem
  */
 export function showProblem(root, problem) {
-  const told = problem instanceof Error ? problem.message : String(problem);
-  fill(
-    root,
-    element(
-      "div",
-      { class: "page", role: "alert" },
-      element("h1", {}, say("problem_title")),
-      element("p", {}, say("problem_way_out")),
-      element("pre", {}, told),
-    ),
-  );
+  const content =
+    problem instanceof NoWebGLError
+      ? [element("p", {}, say("no_webgl"))]
+      : [element("p", {}, say("problem_way_out")), element("pre", {}, toldBy(problem))];
+  const title = element("h1", {}, say("problem_title"));
+  fill(root, element("div", { class: "page", role: "alert" }, title, ...content));
+}
+
+/**
+ * Return what a problem says of itself.
+ * @param {unknown} problem
+ * @returns {string}
+ */
+export function toldBy(problem) {
+  return problem instanceof Error ? problem.message : String(problem);
 }
 
 /** @returns {string} now, UTC */

@@ -191,7 +191,7 @@ class DriveScreen {
     this.picture = requestAnimationFrame((next_ms) => this.draw(next_ms));
     const frame = this.between.at(performance.now());
     if (frame) {
-      this.scene.draw(frame);
+      this.scene.draw(frame, this.paused);
       this.cluster.show(frame.values);
       this.buttons?.show(frame.values);
     }

@@ -1,6 +1,6 @@
 // Storing that does not give up: until it has worked, the page asks what to do, and keeps what it has.
 
-import { choose, showPage } from "./app.js";
+import { choose, showPage, toldBy } from "./app.js";
 import { element } from "../dom.js";
 import { handOut } from "./hand_out.js";
 import { memoryStorage } from "./storage.js";
@@ -32,8 +32,7 @@ export async function patiently(app, work) {
  * @param {unknown} problem
  */
 async function asked(app, work, problem) {
-  const told = problem instanceof Error ? problem.message : String(problem);
-  const heading = say("not_stored", { problem: told });
+  const heading = say("not_stored", { problem: toldBy(problem) });
   const choice = await choose(app, heading, [element("p", {}, say("not_stored_way_out"))], [
     { text: say("try_again"), choice: "again", kind: "main" },
     { text: say("hand_out"), choice: "zip" },

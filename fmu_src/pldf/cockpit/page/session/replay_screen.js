@@ -171,7 +171,7 @@ class ReplayScreen {
     }
     fill(play, say(this.playing ? "stop" : "play"));
     const frame = now.replay.at(this.time_s);
-    this.scene?.draw(frame);
+    this.scene?.draw(frame, !this.playing);
     this.cluster?.show(frame.values);
     this.compare(frame);
   }

@@ -2,6 +2,7 @@
 
 import { wording } from "../language.js";
 import { ReplayError } from "../engine/replay.js";
+import { toldBy } from "./app.js";
 
 const en = {
   replay: "Watch what was driven",
@@ -80,6 +81,5 @@ export function refusalText(problem) {
     const { columns = [], line = 0, column = "", value = "" } = problem.details;
     return say(problem.problem, { columns: columns.join(", "), line, column, value });
   }
-  const reason = problem instanceof Error ? problem.message : String(problem);
-  return say("refused", { reason });
+  return say("refused", { reason: toldBy(problem) });
 }

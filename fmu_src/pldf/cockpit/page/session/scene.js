@@ -1,5 +1,6 @@
 // What is seen and heard of a moment, of a drive or of a recording.
 
+import { Sound } from "../view/sound.js";
 import { View } from "../view/view.js";
 import { reducedMotion } from "./settings.js";
 
@@ -18,6 +19,7 @@ export class Scene {
     this.canvas = canvas;
     this.road = road;
     this.view = viewOf(canvas, road, settings);
+    this.sound = settings.sound ? new Sound() : null;
   }
 
   /**
@@ -27,12 +29,17 @@ export class Scene {
   set(settings) {
     this.view.options.mirror = settings.mirror;
     this.view.camera = settings.camera;
+    if (settings.sound !== (this.sound !== null)) {
+      this.sound?.dispose();
+      this.sound = settings.sound ? new Sound() : null;
+    }
   }
 
   /**
    * @param {Frame} frame
+   * @param {boolean} paused then it is silent
    */
-  draw(frame) {
+  draw(frame, paused) {
     const { values } = frame;
     const speed_mps = number(values["vehicle.speed_mps"]);
     const acceleration_mps2 = number(values["vehicle.acceleration_mps2"]);
@@ -45,6 +52,12 @@ export class Scene {
       heading_rad: frame.heading_rad,
       lead: present ? { gap_m: number(values["lead.gap_m"]) } : null,
     });
+    this.sound?.play({
+      speed_mps: paused ? 0 : speed_mps,
+      acceleration_mps2,
+      gas_pedal: number(values["driver.gas_pedal"]),
+      running: !paused,
+    });
   }
 
   resize() {
@@ -53,6 +66,7 @@ export class Scene {
 
   dispose() {
     this.view.dispose();
+    this.sound?.dispose();
   }
 }
 
