@@ -28,7 +28,8 @@ const here = (path) => import(new URL(path, location.href).href);
   globalThis.asked = [];
   new AfterDrive(document.querySelector("main"), {
     road: roadOf({ ...drive.road, prepared: bytes(drive.road.prepared) }),
-    frames: drive.frames, unit: "KMH", before: bytes(drive.before), after: bytes(drive.after),
+    frames: drive.frames, unit: "KMH", messages: drive.messages,
+    before: bytes(drive.before), after: bytes(drive.after),
     forget: drive.forgotten && (async (places_m) => {
       asked.push(places_m);
       if (places_m.some((at) => at < 1000)) throw new Error("the disk is full.");
@@ -67,6 +68,10 @@ def drive() -> dict[str, Any]:
     return {
         "road": road(),
         "frames": frames(),
+        "messages": [
+            {"level": "info", "part": "pldf", "text": "pedal intervention 1: <b>learned</b>"},
+            {"level": "info", "part": "vehicle", "text": "nothing of the function"},
+        ],
         "before": text(encode(before())),
         "after": text(after()),
         "forgotten": text(forgotten()),
@@ -109,6 +114,8 @@ def test_what_happened_and_what_was_learned_is_told(
         "2.00 to 2.20 km \N{MIDDLE DOT} new from this drive",
     ]
     assert len(window.find_elements(By.CSS_SELECTOR, ".map-badge")) == 2
+    said = "return [...document.querySelectorAll('.after details li')].map((li) => li.textContent)"
+    assert window.execute_script(said) == ["pedal intervention 1: <b>learned</b>"]
     drawn = window.execute_script(
         "const c = document.querySelector('.after-plot canvas');"
         "return new Set(c.getContext('2d').getImageData(0, 0, c.width, c.height).data).size"

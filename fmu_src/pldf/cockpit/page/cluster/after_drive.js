@@ -10,6 +10,7 @@ import { RouteMap } from "./route_map.js";
 import { SpeedPlot } from "./speed_plot.js";
 import { perMetre, summary } from "./story.js";
 
+/** @typedef {import("../types.js").DriveResult} DriveResult */
 /** @typedef {import("../types.js").Frame} Frame */
 /** @typedef {import("../engine/places.js").Place} Place */
 /** @typedef {import("../engine/profile.js").Profile} Profile */
@@ -21,6 +22,7 @@ import { perMetre, summary } from "./story.js";
  * @property {Uint8Array | null} before profile file before it, null: there was none
  * @property {Uint8Array | null} after profile file after it
  * @property {import("./live.js").Unit} unit
+ * @property {DriveResult["messages"]} [messages] of the FMUs
  * @property {((places_m: number[]) => Promise<Uint8Array>) | null} forget makes, of the file `after`, the
  *   one in which these places are forgotten one after the other, keeps and returns it; null: nobody may
  */
@@ -28,11 +30,13 @@ import { perMetre, summary } from "./story.js";
 const words = wording({
   en: {
     title: "What happened, and what was learned", map: "Map of the road with {count} numbered places",
+    told: "What the function says of each intervention",
     begin: "● start", end: "■ end", gas: "gas pedal", brake: "brake", set_speed: "set speed moved",
     failed: "This could not be forgotten: {reason} What was learned is as before; try it again.",
   },
   de: {
     title: "Was geschah, und was gelernt wurde", map: "Karte der Strecke mit {count} nummerierten Stellen",
+    told: "Was die Funktion zu jedem Eingriff sagt (englisch)",
     begin: "● Beginn", end: "■ Ende", gas: "Gaspedal", brake: "Bremse", set_speed: "Setztempo verstellt",
     failed: "Das ließ sich nicht vergessen: {reason} Das Gelernte ist wie zuvor; bitte noch einmal versuchen.",
   },
@@ -64,7 +68,7 @@ export class AfterDrive {
       element("h2", {}, words("title")),
       this.summary,
       element("div", { class: "after-map" }, this.map.drawing, legend()),
-      plot, this.error, this.list.root,
+      plot, this.error, this.list.root, outcomes(drive.messages ?? []),
     );
     fill(parent, this.root);
     this.plot = new SpeedPlot(plot, unit, "next", (s_m) => this.map.mark(s_m));
@@ -133,6 +137,14 @@ export class AfterDrive {
 function isSame(place, other) {
   const overlap = other.from_m <= place.at_m && place.at_m <= other.to_m;
   return overlap && place.by === other.by && place.waits === other.waits;
+}
+
+/** @param {DriveResult["messages"]} messages @returns {HTMLElement | null} null: it says nothing */
+function outcomes(messages) {
+  const told = messages.filter(({ part }) => part === "pldf").map(({ text }) => text);
+  if (told.length === 0) return null;
+  const list = element("ul", { lang: "en" }, ...told.map((text) => element("li", {}, text)));
+  return element("details", {}, element("summary", {}, words("told")), list);
 }
 
 function legend() {

@@ -185,6 +185,7 @@ function afterDrive(app, panel, setup, result, learned) {
     before: name ? (setup.profiles[name] ?? null) : null,
     after: name ? (result.profiles[name] ?? null) : null,
     unit: app.settings.unit === "mph" ? "MPH" : "KMH",
+    messages: result.messages,
     forget: name ? (places_m) => forgotten(app, setup, result, learned, name, places_m) : null,
   });
 }
