@@ -20,9 +20,10 @@ const LISTENING = Object.freeze({ learn: 0, apply_learned: true, profile_store: 
  * @throws {import("./fmu_error.js").FmuError} the function refused a value or a call
  */
 export async function forgetPlaces(bundle, setup, places_m) {
+  const fmu = await Fmu.load(bundle.models.pldf);
   let { profiles } = setup;
   for (const s_m of places_m) {
-    profiles = await pressed(bundle, { ...setup, profiles }, "teach.forget_here", s_m);
+    profiles = pressed(fmu, bundle, { ...setup, profiles }, "teach.forget_here", s_m);
   }
   return profiles;
 }
@@ -35,18 +36,18 @@ export async function forgetPlaces(bundle, setup, places_m) {
  * @throws {import("./fmu_error.js").FmuError} the function refused a value or a call
  */
 export async function undoLesson(bundle, setup) {
-  return pressed(bundle, setup, "teach.undo", 0);
+  return pressed(await Fmu.load(bundle.models.pldf), bundle, setup, "teach.undo", 0);
 }
 
 /**
  * Return the profiles after a button was pressed at `s_m`.
+ * @param {Fmu} fmu
  * @param {DriveBundle} bundle
  * @param {DriveSetup} setup
  * @param {"teach.forget_here" | "teach.undo"} button
  * @param {number} s_m
  */
-async function pressed(bundle, setup, button, s_m) {
-  const fmu = await Fmu.load(bundle.models.pldf);
+function pressed(fmu, bundle, setup, button, s_m) {
   const function_ = fmu.instantiate("pldf", filesOf("pldf", bundle, setup));
   function_.setAll({ ...setup.values.pldf, ...LISTENING, "vehicle.s_m": s_m });
   function_.enterInitialization();
