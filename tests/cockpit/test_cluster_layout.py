@@ -96,7 +96,7 @@ def test_what_is_written_in_the_cluster_has_contrast() -> None:
 
 
 def test_what_is_written_after_the_drive_has_contrast() -> None:
-    colours = colours_of(PAGE / "cluster/cluster.css", ".after")
+    colours = colours_of(PAGE / "cluster/after.css", ".after")
     assert set(colours) == {f"after-{n}" for n in ("text", "quiet", "faster", "slower", "waits")}
     for name, colour in colours.items():  # on white, or white on it
         assert contrast(colour, "#ffffff") >= CONTRAST_MIN, name
