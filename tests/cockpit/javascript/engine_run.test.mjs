@@ -91,11 +91,26 @@ test("a pause in which the drive ends is kept, too, and only once", () => {
 test("who pauses has let go of everything when the drive goes on", () => {
   const { drive, run } = standing();
   run.resume();
-  drive.person.take({ ...RELEASED, gas_pedal: 0.7, up: true, pause_learning: true });
+  drive.person.take({ ...RELEASED, gas_pedal: 0.7, pause_learning: true });
   run.pause("hidden");
   run.resume();
   drive.person.advance(5);
   assert.deepEqual(drive.person.changes, [{ step: 5, name: "teach.pause", value: 1 }]);
+});
+
+test("what is pressed while the drive stands is not done, but for the driver's last word", () => {
+  const { drive, run } = standing();
+  run.resume();
+  run.hear({ ...RELEASED, down: true });
+  run.pause("asked for");
+  run.hear({ ...RELEASED, gas_pedal: 1, up: true, forget_here: true });
+  run.hear({ ...RELEASED });
+  run.resume();
+  drive.person.advance(7);
+  assert.deepEqual(drive.person.changes, [
+    { step: 7, name: "lever.down", value: 1 },
+    { step: 7, name: "teach.forget_here", value: 1 },
+  ]);
 });
 
 test("a machine that is too slow for a moment leaves a note, and the drive goes on", () => {

@@ -83,10 +83,17 @@ export class Person {
     }
   }
 
-  /** Let go of everything but the switch that pauses learning. */
+  /** Let go of pedals, wheel and lever; what was pressed before still counts. */
   release() {
-    this.take({ ...RELEASED, pause_learning: this.now.pause_learning });
-    this.closed.clear();
+    this.now = { ...RELEASED, pause_learning: this.now.pause_learning };
+  }
+
+  /**
+   * Hear what the person does while the drive stands: the driver's last word counts, nothing else.
+   * @param {Controls} controls
+   */
+  takeStanding({ pause_learning, forget_here, undo }) {
+    this.take({ ...RELEASED, pause_learning, forget_here, undo });
   }
 
   /** @param {number} step */

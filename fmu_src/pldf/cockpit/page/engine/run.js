@@ -46,7 +46,11 @@ export class Run {
    */
   hear(controls) {
     this.heard_ms = this.clock_ms();
-    this.drive.person?.take(controls);
+    if (this.paused === null) {
+      this.drive.person?.take(controls);
+    } else {
+      this.drive.person?.takeStanding(controls);
+    }
   }
 
   /**
