@@ -29,7 +29,8 @@ export function readTable(text) {
   const separator = separatorOf(text);
   /** @type {Table} */
   const table = { names: [], rows: [], lines: [], comments: [] };
-  for (const { line, cells } of cellsOf(text, separator)) {
+  const lines = text.includes('"') ? quotedCells(text, separator) : plainCells(text, separator);
+  for (const { line, cells } of lines) {
     if (cells[0].startsWith("#")) {
       table.comments.push(cells.join(separator).slice(1).trim());
     } else if (table.names.length === 0) {
@@ -47,8 +48,8 @@ export function readTable(text) {
  * @param {string} cell
  */
 export function numberOf(cell) {
-  const plain = cell.trim().replace(",", ".");
-  return plain === "" ? NaN : Number(plain);
+  const plain = cell.includes(",") ? cell.replace(",", ".") : cell;
+  return plain.trim() === "" ? NaN : Number(plain);
 }
 
 /** @param {string} text */
@@ -60,12 +61,28 @@ function separatorOf(text) {
 }
 
 /**
+ * Yield the cells of each line that is not empty, of a text without quotes.
+ * @param {string} text
+ * @param {string} separator
+ * @returns {Generator<{line: number, cells: string[]}>}
+ */
+function* plainCells(text, separator) {
+  let line = 0;
+  for (const whole of text.split(/\r\n|\r|\n/)) {
+    line += 1;
+    if (whole.trim() !== "") {
+      yield { line, cells: whole.split(separator) };
+    }
+  }
+}
+
+/**
  * Yield the cells of each line that is not empty; a quoted cell may hold separators and line breaks.
  * @param {string} text
  * @param {string} separator
  * @returns {Generator<{line: number, cells: string[]}>}
  */
-function* cellsOf(text, separator) {
+function* quotedCells(text, separator) {
   const plain = `(?!")[^${separator}\\r\\n]*`;
   const end = `${separator}|\\r\\n|\\r|\\n|$`;
   const form = new RegExp(`(?:"((?:[^"]|"")*)"|(${plain}))(${end})`, "gy");

@@ -154,6 +154,6 @@ function meaning(column, cell) {
   if (column.kind === "flag") {
     return FLAGS[cell.toLowerCase()] ?? NaN;
   }
-  const code = column.words.indexOf(cell.toUpperCase());
+  const code = column.kind === "word" ? column.words.indexOf(cell.toUpperCase()) : -1;
   return code >= 0 ? code : numberOf(cell);
 }
