@@ -17,6 +17,7 @@ export function car(hex) {
   const solid = new MeshBuilder({ x_m: 0, y_m: 0 });
   // Ahead is north of the model: -z in the scene.
   solid.stand({ x_m: 0, y_m: 0, z_m: 0, heading_rad: Math.PI / 2 });
+  shadow(solid);
   body(solid, hex);
   cabin(solid, hex);
   lights(solid);
@@ -26,6 +27,14 @@ export function car(hex) {
   const mesh = solid.mesh();
   if (!mesh) throw new Error("a car without faces");
   return mesh;
+}
+
+/** On the road below, in two steps. @param {MeshBuilder} solid */
+function shadow(solid) {
+  for (const [out, up, hex] of [[0.16, 0.03, 0x4a4b4e], [0, 0.04, 0x2c2d2f]]) {
+    const [front, rear, half] = [0.02 + out, -CAR_LENGTH_M - out, HALF_M + out];
+    solid.face([[rear, -half, up], [front, -half, up], [front, half, up], [rear, half, up]], hex, 0.9);
+  }
 }
 
 /** @param {MeshBuilder} solid @param {number} hex */

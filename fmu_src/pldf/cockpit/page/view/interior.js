@@ -74,8 +74,10 @@ export class Interior {
       for (let k = 0; k < across; k++) {
         const [a, b, c, d] = [at(rows[row - 1], k), at(rows[row - 1], k + 1), at(rows[row], k + 1), at(rows[row], k)];
         points.push(a, b, c, a, c, d);
-        const light = 0.16 + 0.09 * Math.sin((Math.PI * (k + 0.5)) / across) + 0.06 * row;
-        for (let corner = 0; corner < 6; corner++) colors.push(light * 0.5, light * 0.75, light);
+        for (const [i, j] of [[row - 1, k], [row - 1, k + 1], [row, k + 1], [row - 1, k], [row, k + 1], [row, k]]) {
+          const light = 0.02 + 0.08 * Math.sin((Math.PI * j) / across) + 0.045 * i;
+          colors.push(light * 0.45, light * 0.75, light);
+        }
       }
     }
     const geometry = triangles(points);

@@ -14,12 +14,15 @@ import { pictureOf } from "./materials.js";
 const WIDTH_PX = 384;
 const HEIGHT_PX = 96;
 const SHARE = 0.24; // of the picture's width
+const ASIDE = 0.1;
 const FOV_DEG = 13; // upright
 const SIGHT_M = 2600; // as far as the sky
 const FRAME_SHARE = 0.05;
 
 export class Mirror {
-  constructor() {
+  /** @param {number} side +1: the driver sits on the left and it hangs on the right, -1: the other way round */
+  constructor(side) {
+    this.side = side;
     this.target = new WebGLRenderTarget(WIDTH_PX, HEIGHT_PX, { minFilter: LinearFilter });
     this.camera = new PerspectiveCamera(FOV_DEG, WIDTH_PX / HEIGHT_PX, 2.5, SIGHT_M);
     this.camera.rotation.order = "YXZ";
@@ -35,7 +38,7 @@ export class Mirror {
   resize(width, height) {
     const [w, h] = [SHARE, (SHARE * width * HEIGHT_PX) / WIDTH_PX / height];
     this.glass.scale.set(w, h, 1);
-    this.glass.position.set(0.5 + 0.1, 1 - h / 2 - 0.03, 0.1);
+    this.glass.position.set(0.5 + ASIDE * this.side, 1 - h / 2 - 0.03, 0.1);
     this.frame.scale.set(w * (1 + FRAME_SHARE), h * (1 + 4 * FRAME_SHARE), 1);
     this.frame.position.set(this.glass.position.x, this.glass.position.y, 0);
   }

@@ -41,9 +41,9 @@ export function putUp(solid, sign) {
 /** @param {MeshBuilder} solid @param {boolean} to_left */
 export function putUpBoard(solid, to_left) {
   const [width, height] = BOARD_SIZE_M;
-  solid.cone([0.06, 0, -0.5], 0.04, 0.04, 1.6, 5, POST_HEX);
+  solid.cone([0.06, 0, -0.5], 0.04, 0.04, 2.2, 5, POST_HEX);
   const key = to_left ? "board_left" : "board_right";
-  return facing(solid, new Mesh(new PlaneGeometry(width, height), board(key, to_left)), 1.05, 0.375);
+  return facing(solid, new Mesh(new PlaneGeometry(width, height), board(key, to_left)), 1.3, 0.375);
 }
 
 /** @param {MeshBuilder} solid @param {Mesh} mesh @param {number} up_m @param {number} half_m */

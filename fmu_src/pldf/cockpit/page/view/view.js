@@ -49,7 +49,9 @@ export class View {
     this.own = car(OWN_PAINT);
     this.ahead = car(LEAD_PAINT);
     this.interior = new Interior(road.side);
-    this.mirror = new Mirror();
+    this.mirror = new Mirror(road.side);
+    // A picture in the mirror costs as many corners as that of the road.
+    this.mirrorEvery = software ? 4 : 2;
     this.scene.add(this.sky, this.world.group, this.own, this.ahead, this.interior.group);
     this.frames = 0;
     this.resize();
@@ -84,7 +86,7 @@ export class View {
     this.sky.position.copy(this.lens.position);
     this.#cars(sight, origin);
     const shown = mirror && camera === "cockpit";
-    if (shown && this.frames % 2 === 0) this.#lookBack();
+    if (shown && this.frames % this.mirrorEvery === 0) this.#lookBack();
     this.interior.group.visible = camera === "cockpit";
     this.interior.follow(this.lens);
     this.interior.steer(this.road.curvatureAt(sight.s_m) + sight.heading_rad * 0.02);
