@@ -47,7 +47,7 @@ export function button(text, act, kind = "") {
   return /** @type {HTMLButtonElement} */ (made);
 }
 
-/** @param {...(Node | null | false)} buttons */
+/** @param {...(Node | null | false | "")} buttons */
 export function buttons(...buttons) {
   return element("div", { class: "buttons" }, ...buttons);
 }

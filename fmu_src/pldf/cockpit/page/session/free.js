@@ -19,7 +19,7 @@ import { say } from "./words.js";
 /** @typedef {import("../engine/inputs/inputs.js").Inputs} Inputs */
 /** @typedef {import("./app.js").App} App */
 /** @typedef {import("./storage.js").Storage} Storage */
-/** @typedef {{read: () => Promise<Files>, write: (files: Files) => Promise<void>}} Learned */
+/** @typedef {{read: () => Promise<Files>, write: (files: Files) => Promise<void>}} Learned write: these and no others */
 
 const DRIVER_ID = 1;
 const SIMULATED = "simulated driver";
@@ -75,6 +75,11 @@ function keptLearned(storage, road) {
       return Object.fromEntries(Object.entries(files).filter(([, bytes]) => bytes.length));
     },
     write: async (files) => {
+      for (const path of await storage.list(folder)) {
+        if (!(path.slice(folder.length) in files)) {
+          await storage.write(path, new Uint8Array()); // an empty file is none
+        }
+      }
       for (const [name, bytes] of Object.entries(files)) {
         await storage.write(`${folder}${name}`, bytes);
       }
@@ -158,6 +163,11 @@ function afterwards(app, setup, result, learned) {
       buttons(
         button(say("drive_again_learned"), () => end(true), "main"),
         button(say("home"), () => end(false)),
+        button(say("forget_all"), () => {
+          if (confirm(say("forget_all_sure"))) {
+            void learned.write({}).then(() => end(true));
+          }
+        }),
       ),
       panel,
     );

@@ -1,9 +1,11 @@
 // One person's session: where the flow stands is shown, what happens is kept, and then it goes on.
 
+import { placesOf } from "../engine/places.js";
+import { readProfile } from "../engine/profile.js";
 import { moved, placeOf, stepsOf } from "./flow.js";
 import { choose, now, showPage } from "./app.js";
 import { element } from "../dom.js";
-import { keepRecord, otherWithNumber, publishProfiles, readRecord } from "./keeping.js";
+import { keepRecord, learnedFiles, otherWithNumber, publishProfiles, readRecord } from "./keeping.js";
 import { newRecord, noted } from "./record.js";
 import { patiently } from "./patiently.js";
 import { screenOf } from "./guided_screens.js";
@@ -67,6 +69,7 @@ export class Session {
     this.stopDrive = null;
     /** @type {(reason: string) => void} */
     this.leave = () => {};
+    this.learned = 0;
   }
 
   /**
@@ -88,6 +91,7 @@ export class Session {
     if (found) {
       await patiently(app, (storage) => publishProfiles(storage, record));
       session.record = noted(record, "opened again", now());
+      await session.countLearned();
     }
     return session;
   }
@@ -148,6 +152,14 @@ export class Session {
       await keepRecord(storage, record, this.app.bundle);
       await publishProfiles(storage, record);
     });
+    await this.countLearned();
+  }
+
+  /** How many places are learned now: the experimenter sees it. */
+  async countLearned() {
+    const files = await patiently(this.app, (storage) => learnedFiles(storage, this.record));
+    const [bytes] = Object.values(files);
+    this.learned = bytes ? placesOf(readProfile(bytes), this.app.road.limit_mps).length : 0;
   }
 
   /** The session was stopped: it can go on there, now or another time. */
@@ -197,7 +209,7 @@ export class Session {
       explanation: record.explanation,
       unit: app.settings.unit === "mph" ? "MPH" : "KMH",
       language: language(),
-      learned_places: 0,
+      learned_places: this.learned,
       end_m: app.bundle.plan.end_m,
       ...more,
     });

@@ -9,6 +9,7 @@ import { handOut } from "./hand_out.js";
 import { fromJson, toJson } from "./saved.js";
 import { noted, withAnswers } from "./record.js";
 import { progress } from "./progress.js";
+import { learnedPanel } from "./see_learned.js";
 import { say } from "./words.js";
 
 /** @typedef {import("./flow.js").Event} Event */
@@ -123,13 +124,19 @@ async function thanks(session) {
   const { app } = session;
   const zip =
     app.storage.kind !== "server" && button(say("hand_out"), () => void handOut(app.storage));
+  const panel = element("div", {});
+  const see = button(say("see_learned"), () => {
+    see.remove();
+    void learnedPanel(app, session.record).then((learned) => fill(panel, learned));
+  });
   showPage(
     app,
     say("thanks_title"),
     laboratoryText(app.bundle.pages.thanks),
     element("p", {}, say("finished")),
     zip && element("p", {}, say("hand_out_hint")),
-    buttons(zip),
-  );
+    buttons(zip, session.record.learned_after && see),
+    panel,
+  ).classList.add("wide");
   return new Promise(() => {}); // the last step has no end
 }

@@ -10,6 +10,7 @@ import { LANGUAGES, chooseLanguage } from "./languages.js";
 import { participantOf } from "./participant.js";
 import { replayCard } from "./drop.js";
 import { settingsForm } from "./settings_form.js";
+import { simulate } from "./simulate.js";
 import { say } from "./words.js";
 
 /** @typedef {import("../language.js").Language} Language */
@@ -38,6 +39,11 @@ export function home(app) {
         button(say("demonstration"), () => void demonstrate(app, back)),
       ),
       takePart(app),
+      card(
+        "simulation",
+        element("p", {}, say("simulation_hint")),
+        button(say("simulation_start"), () => void simulate(app, back)),
+      ),
       replayCard(app, back),
       card("settings", settingsForm(app.settings, { study: false })),
       server ? windows() : data(app),

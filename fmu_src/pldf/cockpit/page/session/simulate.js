@@ -1,0 +1,106 @@
+// All drives of the plan by a simulated driver, as fast as this computer can, to watch and compare.
+
+import { DriveClient } from "../engine/client.js";
+import { readProfile } from "../engine/profile.js";
+import { readReplay } from "../engine/replay.js";
+import { element } from "../dom.js";
+import { language } from "../language.js";
+import { showPage, showProblem } from "./app.js";
+import { watch } from "./replay_screen.js";
+import { driveSetup } from "./setup.js";
+import { say } from "./words.js";
+
+/** @typedef {import("../types.js").DriveResult} DriveResult */
+/** @typedef {import("../types.js").DriveSetup} DriveSetup */
+/** @typedef {import("../types.js").Files} Files */
+/** @typedef {import("../types.js").PlannedDrive} PlannedDrive */
+/** @typedef {import("./app.js").App} App */
+
+const DRIVER_ID = 1;
+
+/**
+ * Simulate a participant, then show all drives.
+ * @param {App} app
+ * @param {() => void} back to the first page
+ */
+export async function simulate(app, back) {
+  try {
+    const driven = await drivenAll(app);
+    const profiles = Object.entries(driven.profiles).map(([name, bytes]) => ({
+      name,
+      bytes,
+      profile: readProfile(bytes),
+    }));
+    const recordings = driven.results.map(([name, result]) => ({
+      name,
+      replay: readReplay(result.recording),
+    }));
+    watch(app, { recordings, profiles, road: null, refused: [] }, back);
+  } catch (problem) {
+    showProblem(app.root, problem);
+  }
+}
+
+/**
+ * @param {App} app
+ * @returns {Promise<{results: [string, DriveResult][], profiles: Files}>}
+ */
+async function drivenAll(app) {
+  /** @type {[string, DriveResult][]} */
+  const results = [];
+  /** @type {Files} */
+  let profiles = {};
+  const phases = app.bundle.plan.orders.AB;
+  const bar = element("progress", { max: phases.length, value: 0, "aria-label": say("simulation") });
+  showPage(app, say("simulation"), bar);
+  for (const phase of phases) {
+    const drive = /** @type {PlannedDrive} */ (
+      app.bundle.plan.drives.find((one) => one.phase === phase)
+    );
+    const result = await drivenFast(app, simulated(app, drive, profiles));
+    if (result.ending === "failed") {
+      throw new Error(`${phase}: ${result.reason}`);
+    }
+    profiles = drive.learn ? result.profiles : profiles;
+    results.push([phase, result]);
+    bar.setAttribute("value", String(results.length));
+  }
+  return { results, profiles };
+}
+
+/**
+ * Return a drive of the plan that the driver FMU drives in this road's car.
+ * @param {App} app
+ * @param {PlannedDrive} drive
+ * @param {Files} profiles
+ * @returns {DriveSetup}
+ */
+function simulated(app, drive, profiles) {
+  const setup = driveSetup(app.bundle, drive, {
+    driver_id: DRIVER_ID,
+    profiles,
+    device: "simulated driver",
+    settings: app.settings,
+    language: language(),
+  });
+  return { ...setup, who: "model", activate: false, pace: "fast", steering: "assisted" };
+}
+
+/**
+ * @param {App} app
+ * @param {DriveSetup} setup
+ * @returns {Promise<DriveResult>}
+ */
+async function drivenFast(app, setup) {
+  const client = new DriveClient();
+  try {
+    /** @type {Promise<DriveResult>} */
+    const ended = new Promise((resolve) => {
+      client.onended = resolve;
+    });
+    await client.start(app.bundle, setup);
+    return await ended;
+  } finally {
+    client.dispose();
+  }
+}
