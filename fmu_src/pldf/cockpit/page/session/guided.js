@@ -159,7 +159,8 @@ export class Session {
   async countLearned() {
     const files = await patiently(this.app, (storage) => learnedFiles(storage, this.record));
     const [bytes] = Object.values(files);
-    this.learned = bytes ? placesOf(readProfile(bytes), this.app.road.limit_mps).length : 0;
+    const places = bytes ? placesOf(readProfile(bytes), this.app.road.limit_mps) : [];
+    this.learned = places.filter((place) => !place.waits).length;
   }
 
   /** The session was stopped: it can go on there, now or another time. */

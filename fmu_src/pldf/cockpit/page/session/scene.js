@@ -19,7 +19,7 @@ export class Scene {
     this.canvas = canvas;
     this.road = road;
     this.view = viewOf(canvas, road, settings);
-    this.sound = settings.sound ? new Sound() : null;
+    this.sound = soundOf(settings);
   }
 
   /**
@@ -31,7 +31,7 @@ export class Scene {
     this.view.camera = settings.camera;
     if (settings.sound !== (this.sound !== null)) {
       this.sound?.dispose();
-      this.sound = settings.sound ? new Sound() : null;
+      this.sound = soundOf(settings);
     }
   }
 
@@ -78,6 +78,14 @@ export class Scene {
 function viewOf(canvas, road, settings) {
   const { fov_deg, camera, mirror } = settings;
   return new View(canvas, road, { fov_deg, camera, mirror, reducedMotion: reducedMotion(settings) });
+}
+
+/**
+ * Browsers let no page sound before it was touched.
+ * @param {Settings} settings
+ */
+function soundOf({ sound }) {
+  return sound && navigator.userActivation?.hasBeenActive !== false ? new Sound() : null;
 }
 
 /** @param {Value | undefined} value */

@@ -30,6 +30,7 @@ export async function learnedPanel(app, record) {
     before: await profileOf(app, before),
     after: await profileOf(app, record),
     unit: app.settings.unit === "mph" ? "MPH" : "KMH",
+    messages: drive.messages,
     forget: null, // in a study, the drives are what is learned
   });
   return panel;
