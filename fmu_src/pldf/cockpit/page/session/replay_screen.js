@@ -57,11 +57,17 @@ class ReplayScreen {
       this.close();
       back();
     };
-    const plot = element("div", { class: "replay-plot" });
-    const page = element("div", { class: "replay" }, ...this.scenery(), plot);
+    const plot = element("div", {});
+    const drawn = element("div", { class: "replay-plot" }, plot);
+    const page = element("div", { class: "replay" }, ...this.scenery(), drawn);
     page.append(...notes, ...this.doubts());
     fill(app.root, page);
     this.plot = comparePlot(plot, app.road.length_m, watched, profiles, this.unit);
+    this.onresize = () => {
+      this.scene?.resize();
+      this.plot.setSize({ width: plot.clientWidth, height: this.plot.height });
+    };
+    addEventListener("resize", this.onresize);
     this.begin();
   }
 
@@ -80,8 +86,9 @@ class ReplayScreen {
     });
     const bottom = element("div", { class: "drive-bottom" }, dashboard);
     return [
-      element("div", { class: "replay-scene" }, this.canvas, this.compared, bottom),
+      element("div", { class: "replay-scene" }, this.canvas, bottom),
       this.bar(back),
+      this.compared,
     ];
   }
 
@@ -126,8 +133,6 @@ class ReplayScreen {
       return;
     }
     this.scene = new Scene(this.canvas, this.app.road, this.app.settings);
-    this.onresize = () => this.scene?.resize();
-    addEventListener("resize", this.onresize);
     this.playing = true;
     this.change(0);
     this.picture = requestAnimationFrame((now_ms) => this.draw(now_ms));
@@ -215,9 +220,7 @@ class ReplayScreen {
 
   close() {
     cancelAnimationFrame(this.picture ?? 0);
-    if (this.onresize) {
-      removeEventListener("resize", this.onresize);
-    }
+    removeEventListener("resize", this.onresize);
     this.scene?.dispose();
     this.plot.destroy();
   }
