@@ -84,6 +84,7 @@ def listen(bind: str) -> socket.socket:
     listening = socket.socket(family, socket.SOCK_STREAM)
     try:
         listening.bind((bind, 0))
+        listening.listen()  # who comes before the server is ready waits
     except OSError as problem:
         listening.close()
         raise ModelError(
