@@ -16,6 +16,7 @@ COMMANDS: Final = {
     "plot": "Draw recordings: speed over distance, interventions, pedals.",
     "profiles": "Show, export and roll back what was learned for drivers and routes.",
     "study": "Drive a study: the participants of a study file, or one driver with figures.",
+    "cockpit": "Drive yourself: a page in the browser on the same FMUs, alone or as a desk study.",
     "analyse": "Analyse a study, real or simulated: rates, scores, tests, effect sizes, report.",
     "export": "Write a recording as Parquet or ASAM MDF4, with units.",
     "doctor": "Show what is installed, what is missing, and where FMUs, profiles and caches lie.",

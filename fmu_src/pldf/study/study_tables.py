@@ -114,6 +114,7 @@ class CockpitTable(Struct, forbid_unknown_fields=True, frozen=True):
     practice_end_m: PracticeEnd = 1000.0
     explanations: tuple[Explanation, ...] = ("text",)
     steering: Literal["assisted", "person"] = "assisted"
+    traffic: bool = False
     fov_deg: FieldOfView = 60.0
     breaks: dict[str, Any] = {}
     ask: dict[str, Any] = {}

@@ -1,0 +1,112 @@
+"""``pldf cockpit``: people drive the study road in a browser, on the same FMUs."""
+
+from __future__ import annotations
+
+import argparse
+import socket
+import sys
+import webbrowser
+from contextlib import suppress
+from pathlib import Path
+from typing import Final
+
+from ..cockpit.desk_study import DESK, DeskStudy, read_desk_study
+from .shared.telling import tell
+
+EXAMPLE: Final = (
+    "pldf cockpit\n"
+    "      drive in the browser: at once, or the whole study at a desk, into out/cockpit\n"
+    "  pldf cockpit my_study.toml --out laboratory --language de\n"
+    "      a study of one's own; then: pldf analyse laboratory\n"
+    "  pldf cockpit my_study.toml --export cockpit.html\n"
+    "      one file that needs neither pldf nor network; then: pldf analyse cockpit-P07.zip"
+)
+_LANGUAGES: Final = ("en", "de")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``pldf cockpit``."""
+    parser.add_argument(
+        "file", nargs="?", metavar="STUDY.toml", default=DESK,
+        help="study file, whose table [cockpit] says what people read and are asked (default: "
+        f"'{DESK}', the packaged study on the study road)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--out", type=Path, metavar="FOLDER",
+        help="recordings, profiles and answers (default: STUDY.toml's output); a study that was "
+        "begun there goes on",
+    )  # fmt: skip
+    parser.add_argument(
+        "--export", type=Path, metavar="HTML",
+        help="write the page as one file instead, which keeps its data in the browser",
+    )  # fmt: skip
+    parser.add_argument(
+        "--language", choices=_LANGUAGES, default="", help="of the page (default: STUDY.toml's)"
+    )
+    parser.add_argument(
+        "--bind", metavar="ADDRESS", default="127.0.0.1",
+        help="also let other machines in, for a cluster on a tablet: 0.0.0.0 or an address of this "
+        "machine (default: this machine only)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--no-browser", dest="browser", action="store_false", help="only print the address"
+    )
+    parser.set_defaults(wrong_usage=parser.error)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Serve the page until Ctrl-C, or write it."""
+    if options.export and options.out:
+        options.wrong_usage("--out: an exported page keeps its data in the browser")
+    from ..cockpit.bundle import bundle  # noqa: PLC0415 - slow to import
+    from ..cockpit.page_json import as_json  # noqa: PLC0415
+
+    desk = read_desk_study(options.file, options.language)
+    tell(desk.study.notes)
+    made = as_json(bundle(desk, options.language, _announce))
+    if options.export:
+        from ..cockpit.export import write_export  # noqa: PLC0415
+
+        write_export(options.export, made)
+        size_mb = options.export.stat().st_size / 1e6
+        print(f"{options.export}: {size_mb:.1f} MB; open it in a browser, on any machine.")
+        return
+    _serve(options, desk, made)
+
+
+def _serve(options: argparse.Namespace, desk: DeskStudy, made: bytes) -> None:
+    from ..cockpit.guard import LOOPBACK  # noqa: PLC0415 - as above
+    from ..cockpit.server import Cockpit, listen, serve  # noqa: PLC0415
+
+    cockpit = Cockpit(made, options.out or desk.study.out, options.bind)
+    with listen(options.bind) as listening:
+        port = listening.getsockname()[1]
+        address = f"http://{_name(options.bind)}:{port}/{cockpit.token}/"
+        if options.bind not in LOOPBACK:
+            print(
+                f"pldf: --bind {options.bind}: whoever is in this network and has the address can "
+                "drive, read and write the study's data, and it travels unencrypted; use a "
+                "network of your own",
+                file=sys.stderr,
+            )
+        print(f"{desk.study.title}: {address}", flush=True)
+        print(f"experimenter: {address}experimenter.html", flush=True)
+        print(f"cluster on a second screen: {address}cluster.html", flush=True)
+        print(f"Data go to {cockpit.folder}. Ctrl-C ends.", flush=True)
+        if options.browser:
+            webbrowser.open(address)
+        with suppress(KeyboardInterrupt):
+            serve(cockpit, listening)
+    if cockpit.folder.exists():
+        print(f"Look at the result with: pldf analyse {cockpit.folder}")
+
+
+def _announce(what: str) -> None:
+    print(f"pldf: {what}", file=sys.stderr, flush=True)
+
+
+def _name(bind: str) -> str:
+    """Return how the machine is called in an address."""
+    if bind in ("0.0.0.0", "::"):
+        return socket.gethostname()
+    return f"[{bind}]" if ":" in bind else bind
