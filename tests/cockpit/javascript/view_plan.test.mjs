@@ -83,18 +83,32 @@ test("wind and road are louder the faster one drives, the motor with the foot on
   assert.ok(at(20, 1).motor > at(20, 0).motor);
 });
 
-test("a slow machine gets fewer pixels, a fast one all, a pause changes nothing", () => {
-  const sharpness = new Sharpness(1);
+/** @param {Sharpness} sharpness */
+function shown(sharpness) {
   let now_ms = 0;
-  const frames = (/** @type {number} */ count, /** @type {number} */ each_ms) => {
+  return (/** @type {number} */ count, /** @type {number} */ each_ms) => {
     for (let k = 0; k < count; k++) sharpness.frame((now_ms += each_ms));
+    return sharpness.ratio;
   };
-  frames(50, 60);
-  assert.equal(sharpness.ratio, 0.8);
-  frames(600, 60);
-  assert.equal(sharpness.ratio, 0.5);
-  frames(50, 5000);
-  assert.equal(sharpness.ratio, 0.5);
-  frames(600, 10);
-  assert.equal(sharpness.ratio, 1);
+}
+
+test("a slow machine gets fewer pixels, a fast one all again, a pause changes nothing", () => {
+  const frames = shown(new Sharpness(1, true));
+  assert.equal(frames(25, 40), 1);
+  assert.equal(frames(20, 60), 0.8);
+  assert.equal(frames(600, 60), 0.5);
+  assert.equal(frames(50, 5000), 0.5);
+  assert.equal(frames(1e6, 10), 1);
+});
+
+test("with a graphics card the picture is to be smooth, and the pixels do not go to and fro", () => {
+  const frames = shown(new Sharpness(2, false));
+  assert.equal(frames(21, 16.7), 2);
+  let changes = 0;
+  for (let second = 0, before = 2; second < 60; second++) {
+    const ratio = frames(40, before > 1.5 ? 30 : 16.7);
+    changes += Number(ratio !== before);
+    before = ratio;
+  }
+  assert.ok(changes >= 2 && changes <= 9, `${changes} changes`);
 });

@@ -4,10 +4,14 @@ import {
   Float32BufferAttribute,
   Group,
   Mesh,
-  MeshBasicMaterial,
   TorusGeometry,
 } from "../vendor/three.js";
+import { SOLID } from "./materials.js";
+import { rgb } from "./mesh.js";
 
+const DASH = 0x1d1f22;
+const EDGE = 0x2c2f33;
+const WHEEL = 0x141517;
 const WHEEL_RADIUS_M = 0.19;
 const STEERING_RATIO = 15;
 const WHEELBASE_M = 2.6;
@@ -18,12 +22,6 @@ export class Interior {
   /** @param {number} side +1: the driver sits on the left */
   constructor(side) {
     this.group = new Group();
-    this.materials = {
-      dash: new MeshBasicMaterial({ color: 0x1d1f22 }),
-      edge: new MeshBasicMaterial({ color: 0x2c2f33 }),
-      bonnet: new MeshBasicMaterial({ vertexColors: true }),
-      wheel: new MeshBasicMaterial({ color: 0x141517 }),
-    };
     this.wheel = new Group();
     this.#steeringWheel();
     this.#bonnet(side);
@@ -47,14 +45,14 @@ export class Interior {
   }
 
   #steeringWheel() {
-    const rim = new Mesh(new TorusGeometry(WHEEL_RADIUS_M, 0.016, 8, 40), this.materials.wheel);
+    const rim = new Mesh(painted(new TorusGeometry(WHEEL_RADIUS_M, 0.016, 8, 40), WHEEL), SOLID);
     const spokes = triangles([
       [-0.18, 0.02, 0], [-0.18, -0.02, 0], [0.18, -0.02, 0],
       [-0.18, 0.02, 0], [0.18, -0.02, 0], [0.18, 0.02, 0],
       [-0.05, 0, 0], [-0.04, -0.18, 0], [0.04, -0.18, 0],
       [-0.05, 0, 0], [0.04, -0.18, 0], [0.05, 0, 0],
     ]);
-    this.wheel.add(rim, new Mesh(spokes, this.materials.wheel));
+    this.wheel.add(rim, new Mesh(painted(spokes, WHEEL), SOLID));
     this.wheel.position.set(0, -0.44, -0.62);
     this.wheel.rotation.order = "XYZ";
     this.wheel.rotation.x = -0.35;
@@ -75,25 +73,24 @@ export class Interior {
         const [a, b, c, d] = [at(rows[row - 1], k), at(rows[row - 1], k + 1), at(rows[row], k + 1), at(rows[row], k)];
         points.push(a, b, c, a, c, d);
         for (const [i, j] of [[row - 1, k], [row - 1, k + 1], [row, k + 1], [row - 1, k], [row, k + 1], [row, k]]) {
-          const light = 0.02 + 0.08 * Math.sin((Math.PI * j) / across) + 0.045 * i;
-          colors.push(light * 0.45, light * 0.75, light);
+          const light = 0.16 + 0.16 * Math.sin((Math.PI * j) / across) + 0.07 * i;
+          colors.push(light * 0.62, light * 0.85, light);
         }
       }
     }
     const geometry = triangles(points);
     geometry.setAttribute("color", new Float32BufferAttribute(colors, 3));
-    this.group.add(new Mesh(geometry, this.materials.bonnet));
+    this.group.add(new Mesh(geometry, SOLID));
   }
 
   #dashboard() {
     const top = quad([-2, -0.36, -0.75], [2, -0.36, -0.75], [2, -0.345, -1.0], [-2, -0.345, -1.0]);
     const front = quad([-2, -1.2, -0.7], [2, -1.2, -0.7], [2, -0.36, -0.75], [-2, -0.36, -0.75]);
-    this.group.add(new Mesh(top, this.materials.edge), new Mesh(front, this.materials.dash));
+    this.group.add(new Mesh(painted(top, EDGE), SOLID), new Mesh(painted(front, DASH), SOLID));
   }
 
   dispose() {
     this.group.traverse((part) => part instanceof Mesh && part.geometry.dispose());
-    for (const material of Object.values(this.materials)) material.dispose();
   }
 }
 
@@ -107,4 +104,12 @@ function triangles(points) {
 /** @param {number[]} a @param {number[]} b @param {number[]} c @param {number[]} d */
 function quad(a, b, c, d) {
   return triangles([a, b, c, a, c, d]);
+}
+
+/** In one colour. @param {BufferGeometry} geometry @param {number} hex */
+function painted(geometry, hex) {
+  const { count } = geometry.getAttribute("position");
+  const colors = Array.from({ length: count }, () => rgb(hex)).flat();
+  geometry.setAttribute("color", new Float32BufferAttribute(colors, 3));
+  return geometry;
 }

@@ -1,21 +1,25 @@
 // How many pixels the picture has: fewer where the machine is slow, since a drive must run smoothly.
 
-const FRAMES = 40; // looked at together
-const SLOW_MS = 45;
+const FRAMES = 20; // looked at together
+const SLOW_MS = { software: 45, card: 24 };
 const FAST_MS = 20;
 const STEP = 0.8;
 const LOWEST = 0.5;
 const PAUSE_MS = 500; // no frame at all: a pause, not a slow machine
+const CALM = 8; // so many looks must be fast before there are more pixels again
 
 /** Watches the time between frames. */
 export class Sharpness {
-  /** @param {number} finest pixels of the picture per pixel of the page */
-  constructor(finest) {
+  /** @param {number} finest pixels of the picture per pixel of the page @param {boolean} software */
+  constructor(finest, software) {
     this.finest = finest;
     this.ratio = finest;
+    this.slow_ms = software ? SLOW_MS.software : SLOW_MS.card;
     /** @type {number[]} */
     this.times_ms = [];
     this.last_ms = NaN;
+    this.calm = 0;
+    this.patience = CALM;
   }
 
   /** @param {number} now_ms @returns {boolean} `ratio` has changed */
@@ -25,12 +29,26 @@ export class Sharpness {
     if (!(passed_ms < PAUSE_MS)) return false;
     this.times_ms.push(passed_ms);
     if (this.times_ms.length < FRAMES) return false;
-    const middle = this.times_ms.sort((a, b) => a - b)[FRAMES / 2];
+    const middle_ms = this.times_ms.sort((a, b) => a - b)[FRAMES / 2];
     this.times_ms = [];
     const before = this.ratio;
-    if (middle > SLOW_MS) this.ratio = Math.max(this.ratio * STEP, LOWEST);
-    else if (middle < FAST_MS) this.ratio = Math.min(this.ratio / STEP, this.finest);
+    if (middle_ms > this.slow_ms) this.#lower();
+    else if (middle_ms < FAST_MS) this.#raise();
+    else this.calm = 0;
     return this.ratio !== before;
+  }
+
+  #lower() {
+    this.ratio = Math.max(this.ratio * STEP, LOWEST);
+    this.calm = 0;
+    this.patience *= 2; // not to and fro
+  }
+
+  #raise() {
+    this.calm += 1;
+    if (this.calm < this.patience) return;
+    this.ratio = Math.min(this.ratio / STEP, this.finest);
+    this.calm = 0;
   }
 }
 

@@ -1,8 +1,8 @@
 // The land in square tiles: fine ones near the driver, coarse ones far away.
 import { BufferAttribute, BufferGeometry, Mesh } from "../vendor/three.js";
 import { chance, hills } from "./chance.js";
+import { SOLID } from "./materials.js";
 import { lightOn, rgb, toScene } from "./mesh.js";
-import { GRASS_M } from "./textures.js";
 
 /** @typedef {import("./ground.js").Ground} Ground */
 
@@ -20,24 +20,22 @@ const RIVERBED = 0x7d9a50;
  * @param {Ground} ground
  * @param {number} i @param {number} j which tile, to the east and to the north
  * @param {boolean} fine
- * @param {import("../vendor/three.js").Material} material
  */
-export function tile(ground, i, j, fine, material) {
+export function tile(ground, i, j, fine) {
   const origin = { x_m: i * TILE_M, y_m: j * TILE_M };
   const cells = fine ? FINE_CELLS : COARSE_CELLS;
   const corners = cornersOf(ground, origin, cells, fine ? 0 : COARSE_BELOW_M);
   const count = cells * cells * 6;
   const positions = new Float32Array(3 * count);
   const colors = new Float32Array(3 * count);
-  const uvs = new Float32Array(2 * count);
   let at = 0;
   const add = (/** @type {Corner[]} */ face, /** @type {number} */ hex) => {
-    const light = lightOn(face[0].at, face[1].at, face[2].at);
+    const uneven = 0.82 + 0.05 * chance(at, i, j); // as light as the verge with its picture
+    const light = uneven * lightOn(face[0].at, face[1].at, face[2].at);
     const color = rgb(hex);
     for (const corner of face) {
       positions.set(corner.at, 3 * at);
       for (let k = 0; k < 3; k++) colors[3 * at + k] = color[k] * light;
-      uvs.set([corner.at[0] / GRASS_M, corner.at[2] / GRASS_M], 2 * at);
       at++;
     }
   };
@@ -53,8 +51,7 @@ export function tile(ground, i, j, fine, material) {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(positions, 3));
   geometry.setAttribute("color", new BufferAttribute(colors, 3));
-  geometry.setAttribute("uv", new BufferAttribute(uvs, 2));
-  const mesh = new Mesh(geometry, material);
+  const mesh = new Mesh(geometry, SOLID);
   mesh.renderOrder = 1; // after what stands on it: nothing is painted twice
   return { mesh, origin };
 }

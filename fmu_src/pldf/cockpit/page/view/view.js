@@ -40,7 +40,7 @@ export class View {
     this.options = options;
     const software = isSoftware(canvas);
     this.renderer = rendererFor(canvas, !software);
-    this.sharpness = new Sharpness(software ? 1 : Math.min(globalThis.devicePixelRatio || 1, 2));
+    this.sharpness = new Sharpness(software ? 1 : Math.min(devicePixelRatio, 2), software);
     this.lens = new PerspectiveCamera(50, 1, NEAR_M, 2.2 * SIGHT_M);
     this.scene = new Scene();
     this.scene.background = new Color().setStyle(ZENITH, "srgb-linear");

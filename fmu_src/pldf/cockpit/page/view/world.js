@@ -98,7 +98,7 @@ export class World {
         if (distance_m > SIGHT_M + TILE_M) continue;
         const detail = far(distance_m);
         const build = () => {
-          const { mesh, origin } = tile(this.kit.ground, i, j, detail > 0, this.kit.grass);
+          const { mesh, origin } = tile(this.kit.ground, i, j, detail > 0);
           return { group: mesh, origin };
         };
         wanted.push({ key: `tile ${i} ${j}`, detail, distance_m, build });
