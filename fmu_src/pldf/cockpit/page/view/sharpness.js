@@ -39,8 +39,9 @@ export class Sharpness {
   }
 
   #lower() {
-    this.ratio = Math.max(this.ratio * STEP, LOWEST);
     this.calm = 0;
+    if (this.ratio <= LOWEST) return;
+    this.ratio = Math.max(this.ratio * STEP, LOWEST);
     this.patience *= 2; // not to and fro
   }
 

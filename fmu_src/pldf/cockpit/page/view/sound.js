@@ -13,7 +13,8 @@ export class Sound {
     this.motor = new Motor();
     /** null: a browser without sound; a drive without is better than none @type {Parts | null} */
     this.parts = globalThis.AudioContext ? parts(new AudioContext()) : null;
-    void this.parts?.context.resume();
+    // Refused before the first key or click, and when it is over before it began.
+    this.parts?.context.resume().catch(() => {});
   }
 
   /**
@@ -39,7 +40,7 @@ export class Sound {
 
   /** Nothing can be heard afterwards. */
   dispose() {
-    void this.parts?.context.close();
+    this.parts?.context.close().catch(() => {});
     this.parts = null;
   }
 }
