@@ -54,6 +54,7 @@ format: $(READY)
 
 docs: $(READY)
 	$(BIN)/python -m mkdocs build --strict
+	$(BIN)/pldf cockpit --export site/drive.html
 
 bench: $(BUILT)
 	@$(BIN)/python benchmarks/bench.py

@@ -217,6 +217,15 @@ def test_first_columns_of_tables_are_variables(page: Path, fmus: dict[str, Fmu])
     assert checked > 10
 
 
+def test_what_make_docs_writes_beside_the_pages_is_linked() -> None:
+    linked = {
+        address
+        for page in (ROOT / "docs").glob("*.md")
+        for address in re.findall(r'<a href="([^"]+)">', text_of(page))
+    }
+    assert linked == set(re.findall(r"--export site/(\S+)", text_of(ROOT / "Makefile")))
+
+
 def test_the_site_builds_without_warnings_and_fetches_nothing(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(tmp_path)]
     result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
