@@ -21,7 +21,7 @@ from .errors import ModelError
 Key = tuple[str, ...]
 StructT = TypeVar("StructT", bound=msgspec.Struct)
 
-_AT: Final = re.compile(r" - at `\$\.?(?P<path>.*?)(\[(?P<item>\d+)\])?`$")
+_AT: Final = re.compile(r" - at (?:`key` in )?`\$\.?(?P<path>.*?)(\[(?:(?P<item>\d+)|\.\.\.)\])?`$")
 _UNKNOWN: Final = re.compile(r"contains unknown field `(.*?)`(?= - at `|$)")
 _HEADER: Final = re.compile(r"\s*\[\s*([^\[\]]+?)\s*\]\s*(#.*)?$")
 _ASSIGNMENT: Final = re.compile(r"\s*([^=#]+?)\s*=")
@@ -145,6 +145,9 @@ def shown(value: object) -> str:
         return str(value).lower()
     if isinstance(value, list):
         return f"[{', '.join(map(shown, value))}]"
+    if isinstance(value, Mapping):
+        inner = ", ".join(f"{_key(key)} = {shown(one)}" for key, one in value.items())
+        return f"{{ {inner} }}"
     return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else str(value)
 
 

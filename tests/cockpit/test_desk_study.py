@@ -9,10 +9,10 @@ from pldf.cockpit.desk_study import DeskStudy, as_html, read_desk_study
 from pldf.errors import ModelError
 
 
-def desk(folder: Path, text: str, language: str = "") -> DeskStudy:
+def desk(folder: Path, text: str) -> DeskStudy:
     path = folder / "my.toml"
     path.write_text(text, encoding="utf-8")
-    return read_desk_study(str(path), language)
+    return read_desk_study(str(path))
 
 
 def test_the_packaged_study() -> None:
@@ -32,8 +32,8 @@ def test_the_packaged_study() -> None:
         "speed_profile",
         "remarks",
     ]
-    assert "<h1>Welcome</h1>" in packaged.pages["welcome"]
-    assert "Willkommen" in read_desk_study(language="de").pages["welcome"]
+    assert "<h1>Welcome</h1>" in packaged.pages["welcome"]["en"]
+    assert "<h1>Willkommen</h1>" in packaged.pages["welcome"]["de"]
 
 
 def test_an_empty_file_is_a_study_for_people_too(tmp_path: Path) -> None:
@@ -45,6 +45,7 @@ ALL = """
 [cockpit]
 language = "de"
 welcome = "hello.md"
+consent = { de = "hello.md" }
 questionnaires = "ask.toml"
 practice = 0
 practice_end_m = 500
@@ -62,8 +63,10 @@ def test_all_that_can_be_said(tmp_path: Path) -> None:
     (tmp_path / "hello.md").write_text("Guten *Tag*", encoding="utf-8")
     (tmp_path / "ask.toml").write_text('include = ["remarks"]\n', encoding="utf-8")
     found = desk(tmp_path, ALL)
-    assert found.pages["welcome"] == "<p>Guten <em>Tag</em></p>\n"
-    assert "Einwilligung" in found.pages["consent"]
+    hello = "<p>Guten <em>Tag</em></p>\n"
+    assert found.pages["welcome"] == {"en": hello, "de": hello}
+    assert found.pages["consent"]["de"] == hello
+    assert "Your consent" in found.pages["consent"]["en"]
     assert found.breaks == {"A3": 5.0}
     assert [one["id"] for one in found.questionnaires] == ["remarks", "nasa_tlx"]
     assert found.table.fov_deg == 100.5
@@ -79,6 +82,12 @@ def test_all_that_can_be_said(tmp_path: Path) -> None:
         ('[cockpit]\nexplanations = ["all"]', 'cockpit.explanations: "all" must be one of "none"'),
         ('[cockpit]\nsteering = "auto"', 'cockpit.steering: "auto" must be one of "assisted"'),
         ('[cockpit]\nwelcome = "none.md"', r"cockpit.welcome: .*none\.md cannot be read"),
+        ("[cockpit]\nthanks = 3", "cockpit.thanks: 3 must be the name of a file in quotes, or"),
+        (
+            '[cockpit]\nthanks = { fr = "x" }',
+            r'line 2, cockpit.thanks: { fr = "x" } must be the name',
+        ),
+        ("[cockpit]\nthanks = { en = 3 }", r"line 2, cockpit.thanks: { en = 3 } must be the name"),
         ('[cockpit]\nquestionnaires = "none.toml"', "line 2, cockpit.questionnaires: .*cannot be"),
         (
             "[cockpit.breaks]\nA9 = 5",

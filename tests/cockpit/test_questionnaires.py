@@ -108,6 +108,8 @@ phase = { kind = "text", text = "?" }
 f = { kind = "text", text = "?", only_if = { id = "g", is = ["1"] } }
 g = { boxes = 1 }
 h = 3
+j = { text = { fr = "?" } }
+k = { left = { en = 1 } }
 laan_1 = { boxes = 7 }
 i = { kind = "choice", text = "?", options = [{ key = "1" }, { key = "1" }] }
 
@@ -142,6 +144,8 @@ def test_all_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
         "mine.items.phase: as a name:",
         'mine.items.f: only_if: "g" is no earlier item',
         "mine.items.g.boxes: 1 must be a whole number from 2",
+        'mine.items.j.text: { fr = "?" } must be a text in quotes',
+        "mine.items.k.left: { en = 1 } must be a text in quotes",
         "mine.items.h: 3 must be a table",
         "mine.items.laan_1: its scale has 5 boxes",
         "mine.items.i: two options have the same key",

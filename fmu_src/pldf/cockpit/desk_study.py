@@ -19,6 +19,7 @@ from .questionnaires import PACKAGED, read_questionnaires
 DESK: Final = "cockpit"
 _TEXTS: Final = Path(__file__).parent / "texts"
 _PAGES: Final = ("welcome", "consent", "thanks")
+LANGUAGES: Final = ("en", "de")
 _BREAK_MAX_MIN: Final = 24 * 60
 
 
@@ -29,24 +30,20 @@ class DeskStudy:
     Attributes:
         study: road, drives and parameters.
         table: the table ``[cockpit]`` of its file.
-        pages: safe HTML of welcome, consent and thanks, by these names.
+        pages: safe HTML of welcome, consent and thanks, by these names and by language.
         breaks: phase -> minutes of rest after it.
         questionnaires: in the form of the page.
     """
 
     study: Study
     table: CockpitTable
-    pages: dict[str, str]
+    pages: dict[str, dict[str, str]]
     breaks: dict[str, float]
     questionnaires: list[dict[str, Any]]
 
 
-def read_desk_study(name: str = DESK, language: str = "") -> DeskStudy:
-    """Read a study file for people.
-
-    Args:
-        name: of the file, or a packaged study.
-        language: "en" or "de" in place of the file's; empty: the file's.
+def read_desk_study(name: str = DESK) -> DeskStudy:
+    """Read a study file for people: ``name`` is its path, or a packaged study.
 
     Raises:
         ModelError: naming file, line, key and the allowed values; all problems of questionnaires
@@ -62,7 +59,7 @@ def read_desk_study(name: str = DESK, language: str = "") -> DeskStudy:
     return DeskStudy(
         study=study,
         table=table,
-        pages={page: _page(file, table, page, language or table.language) for page in _PAGES},
+        pages={page: _pages(file, table, page) for page in _PAGES},
         breaks=_breaks(file, table, phases),
         questionnaires=_questionnaires(file, table),
     )
@@ -73,9 +70,18 @@ def as_html(markdown: str) -> str:
     return str(MarkdownIt("js-default").render(markdown))
 
 
-def _page(file: TomlFile, table: CockpitTable, page: str, language: str) -> str:
-    named: str = getattr(table, page)
-    path = file.path.parent / named if named else _TEXTS / f"{page}.{language}.md"
+def _pages(file: TomlFile, table: CockpitTable, page: str) -> dict[str, str]:
+    """Return a text in both languages; the laboratory's own may be in one alone."""
+    named: str | dict[str, str] = getattr(table, page)
+    own = dict.fromkeys(LANGUAGES, named) if isinstance(named, str) else named
+    return {
+        language: _page(file, page, own.get(language, ""), f"{page}.{language}.md")
+        for language in LANGUAGES
+    }
+
+
+def _page(file: TomlFile, page: str, own: str, packaged: str) -> str:
+    path = file.path.parent / own if own else _TEXTS / packaged
     try:
         return as_html(path.read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError) as problem:

@@ -10,7 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
-from ..cockpit.desk_study import DESK, DeskStudy, read_desk_study
+from ..cockpit.desk_study import DESK, LANGUAGES, DeskStudy, read_desk_study
 from .shared.telling import tell
 
 EXAMPLE: Final = (
@@ -21,7 +21,6 @@ EXAMPLE: Final = (
     "  pldf cockpit my_study.toml --export cockpit.html\n"
     "      one file that needs neither pldf nor network; then: pldf analyse cockpit-P07.zip"
 )
-_LANGUAGES: Final = ("en", "de")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -41,7 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="write the page as one file instead, which keeps its data in the browser",
     )  # fmt: skip
     parser.add_argument(
-        "--language", choices=_LANGUAGES, default="", help="of the page (default: STUDY.toml's)"
+        "--language", choices=LANGUAGES, default="", help="of the page (default: STUDY.toml's)"
     )
     parser.add_argument(
         "--bind", metavar="ADDRESS", default="127.0.0.1",
@@ -61,7 +60,7 @@ def run(options: argparse.Namespace) -> None:
     from ..cockpit.bundle import bundle  # noqa: PLC0415 - slow to import
     from ..cockpit.page_json import as_json  # noqa: PLC0415
 
-    desk = read_desk_study(options.file, options.language)
+    desk = read_desk_study(options.file)
     tell(desk.study.notes)
     made = as_json(bundle(desk, options.language, _announce))
     if options.export:

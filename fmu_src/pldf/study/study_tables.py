@@ -52,6 +52,10 @@ Recorded = Annotated[
     list[str] | Literal["all", "typical"],
     Meta(description='"all", "typical" or a list of participants'),
 ]
+Pages = Annotated[
+    str | dict[Literal["en", "de"], str],
+    Meta(description='the name of a file in quotes, or { en = "...", de = "..." }'),
+]
 Explanation = Literal["none", "icon", "text"]
 Practice = Annotated[
     int, Meta(ge=0, le=PRACTICE_MAX, description=f"a whole number from 0 to {PRACTICE_MAX}")
@@ -106,9 +110,9 @@ class CockpitTable(Struct, forbid_unknown_fields=True, frozen=True):
     """``[cockpit]``: the study with people who drive it themselves (``pldf cockpit``)."""
 
     language: Literal["en", "de"] = "en"
-    welcome: Text = ""
-    consent: Text = ""
-    thanks: Text = ""
+    welcome: Pages = ""
+    consent: Pages = ""
+    thanks: Pages = ""
     questionnaires: Text = ""
     practice: Practice = 1
     practice_end_m: PracticeEnd = 1000.0

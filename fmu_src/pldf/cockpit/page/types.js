@@ -105,7 +105,7 @@
  * @property {Road} road
  * @property {Plan} plan
  * @property {HmiTexts} texts resources/hmi_texts.json
- * @property {{welcome: string, consent: string, thanks: string}} pages safe HTML made of Markdown
+ * @property {Record<"welcome" | "consent" | "thanks", Record<Language, string>>} pages safe HTML made of Markdown
  * @property {Questionnaire[]} questionnaires
  */
 /** @typedef {Record<string, any>} HmiTexts */

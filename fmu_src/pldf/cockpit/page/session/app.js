@@ -1,6 +1,7 @@
 // What all screens of the session know, and how one takes the place of another.
 
 import { element, fill } from "../dom.js";
+import { language } from "../language.js";
 import { NoWebGLError } from "../view/view.js";
 import { say } from "./words.js";
 
@@ -75,11 +76,11 @@ export function choose(app, heading, content, choices) {
  *
  * The only place where the session makes elements of HTML: the text was made of Markdown by
  * `pldf.cockpit.desk_study`, which lets no HTML of its author through.
- * @param {string} html
+ * @param {Record<import("../language.js").Language, string>} html
  */
 export function laboratoryText(html) {
   const made = element("div", { class: "laboratory" });
-  made.innerHTML = html;
+  made.innerHTML = html[language()];
   return made;
 }
 
