@@ -21,7 +21,7 @@ LIVE = f"ws://127.0.0.1:8123{ROOT}/api/live"
 
 
 def client(folder: Path, bind: str = "127.0.0.1") -> TestClient:
-    app = application(Cockpit(b'{"version": "1"}', folder, bind, TOKEN))
+    app = application(Cockpit(b'{"version": "1"}', folder, "", bind, TOKEN))
     return TestClient(app, base_url=HERE, follow_redirects=False)
 
 

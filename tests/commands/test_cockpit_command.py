@@ -79,16 +79,16 @@ def test_it_serves_until_it_is_told_to_end(
     assert err == "pldf: no models are compiled here\n"
 
 
-def test_another_address_is_warned_of(fmu_folder: Path, tmp_path: Path) -> None:
-    process = started(
-        fmu_folder, "--no-browser", "--bind", "0.0.0.0", "--out", str(tmp_path / "none")
-    )
+def test_another_address_and_another_study_are_told(fmu_folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "cockpit.toml").write_text("title = 'another'")
+    process = started(fmu_folder, "--no-browser", "--bind", "0.0.0.0", "--out", str(tmp_path))
     assert process.stdout is not None
     process.stdout.readline()
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=30)
     assert "--bind 0.0.0.0: whoever is in this network and has the address" in err
-    assert not (tmp_path / "none").exists()
+    assert "was begun with another study file (cockpit.toml there)" in err
+    assert (tmp_path / "cockpit.toml").read_text() == "title = 'another'"
 
 
 def test_it_writes_one_file(fmu_folder: Path, tmp_path: Path) -> None:

@@ -46,12 +46,14 @@ class Cockpit:
     Attributes:
         bundle: the bundle as JSON.
         folder: where the study's files go.
+        study: text of the study file, which is left there.
         bind: address to listen at.
         token: first part of every address.
     """
 
     bundle: bytes
     folder: Path
+    study: str = ""
     bind: str = "127.0.0.1"
     token: str = field(default_factory=lambda: secrets.token_urlsafe(16))
 
@@ -114,7 +116,7 @@ class _Desk:
     def __init__(self, cockpit: Cockpit) -> None:
         self.live = Live()
         self._bundle = cockpit.bundle
-        self._folder = Folder(cockpit.folder)
+        self._folder = Folder(cockpit.folder, cockpit.study)
 
     async def bundle(self, _: Request) -> Response:
         return Response(self._bundle, media_type="application/json")

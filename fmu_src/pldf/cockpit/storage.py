@@ -19,6 +19,7 @@ from ..files.disk import folder_lock, free_name, read_file, replace_file
 # A drive of an hour at 100 rows a second and 200 bytes a row is 72 MB.
 FILE_MAX: Final = 100_000_000
 EARLIER: Final = "earlier"
+STUDY: Final = "cockpit.toml"
 # What may lie in the folder: text behind a name, such as recordings/P07_A1.csv.
 _FOLDERS: Final = {
     "recordings": ".csv",
@@ -61,8 +62,16 @@ class Folder:
         OSError: the disk refuses.
     """
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, root: Path, study: str = "") -> None:
+        """Use ``root``, which need not be there yet; it gets ``study``, the text of its file."""
         self.root = root
+        self._study = study.encode()
+
+    @property
+    def of_another_study(self) -> bool:
+        """Whether the folder was begun with another study file."""
+        place = self.root / STUDY
+        return bool(self._study) and place.is_file() and place.read_bytes() != self._study
 
     def read(self, path: str) -> Stored | None:
         """Return a file; None if there is none."""
@@ -92,6 +101,7 @@ class Folder:
                 self._keep(path, before.data, data)
             place.parent.mkdir(parents=True, exist_ok=True)
             replace_file(place, data)
+            self._note_study()
         return _mark(data)
 
     def list(self, prefix: str = "") -> list[str]:
@@ -104,9 +114,20 @@ class Folder:
         """Keep what was there, if it holds what the new content does not."""
         if _is_table(path) or path.endswith(".json") or _grown(before, data):
             return  # made anew from all that is there
+        self._keep_earlier(path, before)
+
+    def _keep_earlier(self, path: str, before: bytes) -> None:
         kept = self.root / EARLIER / path
         kept.parent.mkdir(parents=True, exist_ok=True)
         replace_file(free_name(kept.with_suffix(""), kept.suffix), before)
+
+    def _note_study(self) -> None:
+        """Leave the study file that the data belong to, and the one before."""
+        place = self.root / STUDY
+        if self.of_another_study:
+            self._keep_earlier(STUDY, place.read_bytes())
+        if self._study and (not place.exists() or self.of_another_study):
+            replace_file(place, self._study)
 
     def _place(self, path: str) -> Path:
         if _is_ours(path):

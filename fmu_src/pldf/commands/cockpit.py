@@ -76,8 +76,15 @@ def run(options: argparse.Namespace) -> None:
 def _serve(options: argparse.Namespace, desk: DeskStudy, made: bytes) -> None:
     from ..cockpit.guard import LOOPBACK  # noqa: PLC0415 - as above
     from ..cockpit.server import Cockpit, listen, serve  # noqa: PLC0415
+    from ..cockpit.storage import STUDY, Folder  # noqa: PLC0415
 
-    cockpit = Cockpit(made, options.out or desk.study.out, options.bind)
+    out = options.out or desk.study.out
+    cockpit = Cockpit(made, out, desk.study.source, options.bind)
+    if Folder(out, desk.study.source).of_another_study:
+        _announce(
+            f"{out}: was begun with another study file ({STUDY} there), or with this one before it "
+            "was changed; who begins now drives by the new one. A folder of its own: --out"
+        )
     with listen(options.bind) as listening:
         port = listening.getsockname()[1]
         address = f"http://{_name(options.bind)}:{port}/{cockpit.token}/"
