@@ -13,9 +13,9 @@ import { DrivenPart, named } from "./part.js";
 /** @typedef {{from: Place, to: Place}} Link */
 /** @typedef {Pick<Bundle, "models" | "wires" | "road">} DriveBundle what a drive needs of a bundle */
 
-/** The road's file, as parameters `route_file` name it, and the folder of the profile store, whose path is absolute. */
+/** The road's file, as parameters `route_file` name it, and the folder of the profile store. */
 export const ROAD_FILE = "road.prepared";
-export const STORE = "/profiles";
+export const STORE = "profiles";
 /** What the store needs while it writes, and nobody else. */
 const LOCK = "pldf-store.lock";
 /** The function comes last: it plans its first outputs from where the vehicle is. @type {Part[]} */
