@@ -57,7 +57,7 @@ export function surfaceOf(map) {
 }
 
 /** The surface on which lines are painted: a little farther away than it is. @param {Texture} map */
-export function roadOf(map) {
+export function asphaltOf(map) {
   const material = surfaceOf(map);
   material.polygonOffset = true;
   material.polygonOffsetFactor = 2;

@@ -1,7 +1,7 @@
 // The road and the land around the driver: built piece by piece before they are seen.
 import { Group, Mesh } from "../vendor/three.js";
 import { Ground } from "./ground.js";
-import { SIGHT_M, SOLID, roadOf, surfaceOf } from "./materials.js";
+import { SIGHT_M, SOLID, asphaltOf, surfaceOf } from "./materials.js";
 import { PIECE_M, piece } from "./piece.js";
 import { furnitureOf } from "./plan.js";
 import { crossSection } from "./profile.js";
@@ -30,7 +30,7 @@ export class World {
       section,
       furniture: furnitureOf(road),
       ground: new Ground(road),
-      asphalt: roadOf(asphaltTexture(section, anisotropy)),
+      asphalt: asphaltOf(asphaltTexture(section, anisotropy)),
       grass: surfaceOf(grassTexture(anisotropy)),
       paving: SOLID,
     };
