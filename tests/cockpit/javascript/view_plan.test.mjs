@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { Braking } from "../../../fmu_src/pldf/cockpit/page/view/braking.js";
 import { Motor } from "../../../fmu_src/pldf/cockpit/page/view/motor.js";
 import { furnitureOf, signText } from "../../../fmu_src/pldf/cockpit/page/view/plan.js";
 import { crossSection } from "../../../fmu_src/pldf/cockpit/page/view/profile.js";
@@ -111,4 +112,40 @@ test("with a graphics card the picture is to be smooth, and the pixels do not go
     before = ratio;
   }
   assert.ok(changes >= 2 && changes <= 9, `${changes} changes`);
+});
+
+test("a warning stands behind the curve before its own, or not at all", () => {
+  const bent = (/** @type {number} */ s) => 
+    [300, 420, 490].some((from) => s >= from && s < from + 50) ? 0.01 : 0;
+  const { signs } = furnitureOf(roadModel(800, { curvature_per_m: bent, limit_mps: () => 22 }, {
+    stretches: [
+      { kind: "bend_left", from_m: 290, to_m: 360, name: "" },
+      { kind: "bend_right", from_m: 410, to_m: 480, name: "" },
+      { kind: "bend_left", from_m: 485, to_m: 550, name: "" },
+    ],
+  }));
+  const warnings = signs.filter((sign) => sign.kind.startsWith("curve"));
+  assert.deepEqual(warnings.map((sign) => sign.kind), ["curve_left", "curve_right"]);
+  assert.ok(warnings[1].s_m > 350 && warnings[1].s_m < 360);
+});
+
+test("the car ahead shows when it brakes, not when the picture is drawn twice or jumps", () => {
+  const braking = new Braking();
+  let [s_m, lead_mps] = [0, 20];
+  const drive = (/** @type {number} */ frames, /** @type {number} */ accelerates_mps2) => {
+    let lit = false;
+    for (let k = 0; k < frames; k++) {
+      s_m += 20 / 60;
+      lead_mps += accelerates_mps2 / 60;
+      lit = braking.ahead(s_m, 20, lead_mps);
+      assert.equal(braking.ahead(s_m, 20, lead_mps), lit);
+    }
+    return lit;
+  };
+  assert.equal(drive(60, 0), false);
+  assert.equal(drive(30, -3), true);
+  assert.equal(drive(30, -0.3), false);
+  s_m = 5;
+  lead_mps = 2;
+  assert.equal(drive(4, 0), false);
 });

@@ -50,7 +50,9 @@ export class Scene {
       acceleration_mps2,
       lateral_m: frame.lateral_m,
       heading_rad: frame.heading_rad,
-      lead: present ? { gap_m: number(values["lead.gap_m"]) } : null,
+      lead: present
+        ? { gap_m: number(values["lead.gap_m"]), speed_mps: number(values["lead.speed_mps"]) }
+        : null,
     });
     this.sound?.play({
       speed_mps: paused ? 0 : speed_mps,

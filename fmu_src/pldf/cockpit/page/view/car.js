@@ -9,14 +9,48 @@ const GLASS = 0x2b3640;
 const TYRE = 0x1c1d1f;
 const TRIM = 0x33373a;
 
-/**
- * @param {number} hex paint
- * @returns {import("../vendor/three.js").Mesh} front bumper at zero, ahead is -z
- */
-export function car(hex) {
+/** @typedef {import("../vendor/three.js").Mesh} Mesh */
+
+/** A car with its front bumper at zero; ahead is -z. */
+export class Car {
+  /** @param {number} hex paint */
+  constructor(hex) {
+    this.mesh = built((solid) => car(solid, hex));
+    this.lights = built(brakeLights);
+    this.mesh.add(this.lights);
+  }
+
+  /** @param {boolean} lit */
+  brake(lit) {
+    this.lights.visible = lit;
+  }
+
+  dispose() {
+    this.mesh.geometry.dispose();
+    this.lights.geometry.dispose();
+  }
+}
+
+/** @param {(solid: MeshBuilder) => void} build @returns {Mesh} */
+function built(build) {
   const solid = new MeshBuilder({ x_m: 0, y_m: 0 });
   // Ahead is north of the model: -z in the scene.
-  solid.stand({ x_m: 0, y_m: 0, z_m: 0, heading_rad: Math.PI / 2 });
+  build(solid.stand({ x_m: 0, y_m: 0, z_m: 0, heading_rad: Math.PI / 2 }));
+  const mesh = solid.mesh();
+  if (!mesh) throw new Error("a car without faces");
+  return mesh;
+}
+
+/** @param {MeshBuilder} solid */
+function brakeLights(solid) {
+  for (const [low, high, up] of [[-0.84, -0.48, 0.66], [0.48, 0.84, 0.66], [-0.2, 0.2, 1.3]]) {
+    const behind = up > 1 ? -3.75 : -4.45;
+    solid.face([[behind, high, up], [behind, low, up], [behind, low, up + (up > 1 ? 0.05 : 0.22)], [behind, high, up + (up > 1 ? 0.05 : 0.22)]], 0xff2a1c, 1.5);
+  }
+}
+
+/** @param {MeshBuilder} solid @param {number} hex paint */
+function car(solid, hex) {
   shadow(solid);
   body(solid, hex);
   cabin(solid, hex);
@@ -24,14 +58,11 @@ export function car(hex) {
   for (const ahead of [-0.85, -3.55]) {
     for (const side of [-1, 1]) wheel(solid, ahead, side);
   }
-  const mesh = solid.mesh();
-  if (!mesh) throw new Error("a car without faces");
-  return mesh;
 }
 
 /** On the road below, in two steps. @param {MeshBuilder} solid */
 function shadow(solid) {
-  for (const [out, up, hex] of [[0.16, 0.03, 0x4a4b4e], [0, 0.04, 0x2c2d2f]]) {
+  for (const [out, up, hex] of [[0.05, 0.03, 0x4a4b4e], [-0.12, 0.04, 0x2c2d2f]]) {
     const [front, rear, half] = [0.02 + out, -CAR_LENGTH_M - out, HALF_M + out];
     solid.face([[rear, -half, up], [front, -half, up], [front, half, up], [rear, half, up]], hex, 0.9);
   }
@@ -39,7 +70,7 @@ function shadow(solid) {
 
 /** @param {MeshBuilder} solid @param {number} hex */
 function body(solid, hex) {
-  const ring = [[-4.4, 0.35], [0, 0.3], [0, 0.62], [-0.25, 0.78], [-1.35, 0.93], [-4.1, 0.98], [-4.4, 0.9]];
+  const ring = [[-4.4, 0.24], [0, 0.22], [0, 0.62], [-0.25, 0.78], [-1.35, 0.93], [-4.1, 0.98], [-4.4, 0.9]];
   shell(solid, ring, HALF_M, HALF_M * 0.94, hex);
   solid.box([-3.95, -HALF_M - 0.01, 0.22], [-0.4, HALF_M + 0.01, 0.4], TRIM);
 }

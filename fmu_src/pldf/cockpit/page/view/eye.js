@@ -11,7 +11,8 @@ import { MathUtils } from "../vendor/three.js";
  * @property {number} speed_mps
  * @property {number} lateral_m to the left of the lane's middle
  * @property {number} heading_rad against the lane, to the left
- * @property {{gap_m: number} | null} lead the car ahead, bumper to bumper
+ * @property {{gap_m: number, speed_mps?: number} | null} lead the car ahead, bumper to bumper; with its
+ *   speed it shows when it brakes
  * @property {number} [acceleration_mps2] 0 if absent
  */
 

@@ -10,7 +10,6 @@ import { placesBetween } from "./strips.js";
 const PERIOD_M = 12; // a dash and the gap behind it
 const DASH_M = 4;
 const WIDTH_M = { edge: 0.15, middle: 0.14, lane: 0.14 };
-const STEP_M = 5;
 const UP_M = 0.015;
 const PAINT = rgb(0xeeeee8);
 
@@ -41,7 +40,7 @@ function dashes(from_m, to_m) {
 
 /** @param {MeshBuilder} solid @param {RoadModel} road @param {number} at_m @param {number} half_m @param {number} from_m @param {number} to_m */
 function stroke(solid, road, at_m, half_m, from_m, to_m) {
-  const places = placesBetween(from_m, to_m, STEP_M);
+  const places = placesBetween(road, from_m, to_m);
   const edges = places.map((s_m) =>
     [at_m + half_m, at_m - half_m].map((left_m) => {
       const { x_m, y_m, z_m } = road.at(s_m, left_m);

@@ -29,7 +29,6 @@ import { ASPHALT_M, GRASS_M } from "./textures.js";
  */
 
 export const PIECE_M = 100;
-const STEP_M = 5;
 const LAMP_M = 30;
 const VERGE = 0x82aa4c;
 const DITCH = 0x6f9844;
@@ -69,7 +68,7 @@ function surface(kit, solid, from_m, to_m) {
   const left = { left_m: section.left_m, up_m: 0, u: 0 };
   const right = { left_m: -section.right_m, up_m: 0, u: 1 };
   for (let k = 1; k < cuts.length; k++) {
-    const places = placesBetween(cuts[k - 1], cuts[k], STEP_M);
+    const places = placesBetween(road, cuts[k - 1], cuts[k]);
     const middle = (cuts[k - 1] + cuts[k]) / 2;
     asphalt.add(places, left, right, 0xe4e6ea, (s) => s / ASPHALT_M);
     paintLines(solid, road, section, markingAt(road, middle), cuts[k - 1], cuts[k]);

@@ -20,6 +20,7 @@ const CURVE_MPS2 = 2.2; // lateral acceleration at the limit from which a curve 
 const SHARP_MPS2 = 3;
 const SAME_CURVE_M = 20;
 const WARNING_M = 120;
+const WARNING_MIN_M = 40; // nearer to the curve a warning is none
 const BOARD_M = 20;
 const RAIL_BEFORE_BRIDGE_M = 60;
 const POST_M = 50;
@@ -96,15 +97,15 @@ function curvesOf(road) {
 
 /** @param {RoadModel} road @param {Curve[]} curves @returns {Sign[]} */
 function warnings(road, curves) {
-  return curves
-    .filter((curve) => curve.sharp)
-    .map((curve) => ({
-      s_m: Math.max(curve.from_m - WARNING_M, 2 * FIRST_SIGN_M),
-      kind: /** @type {"curve_left" | "curve_right"} */ (curve.left ? "curve_left" : "curve_right"),
-      text: "",
-      unit: "",
-    }))
-    .filter((sign) => road.limits.every((span) => Math.abs(span.from_m - sign.s_m) > 10));
+  return curves.flatMap((curve, k) => {
+    // Behind the curve before it, or it would speak of that one.
+    const behind_m = k ? curves[k - 1].to_m + 5 : 2 * FIRST_SIGN_M;
+    const s_m = Math.max(curve.from_m - WARNING_M, behind_m);
+    const hidden = road.limits.some((span) => Math.abs(span.from_m - s_m) <= 10);
+    if (!curve.sharp || hidden || curve.from_m - s_m < WARNING_MIN_M) return [];
+    const kind = /** @type {"curve_left" | "curve_right"} */ (curve.left ? "curve_left" : "curve_right");
+    return [{ s_m, kind, text: "", unit: "" }];
+  });
 }
 
 /** On the outside of a curve. @param {Curve} curve @returns {Board[]} */

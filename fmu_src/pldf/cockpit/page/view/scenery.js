@@ -3,7 +3,7 @@ import { standAt } from "./along.js";
 import { between, chance, hills } from "./chance.js";
 import { church, house } from "./houses.js";
 import { bush, fir, hedge, leafTree, tuft } from "./plants.js";
-import { beyondEdge } from "./profile.js";
+import { PAVEMENT_M, beyondEdge } from "./profile.js";
 
 /** @typedef {import("./along.js").Site} Site */
 /** @typedef {import("./mesh.js").MeshBuilder} MeshBuilder */
@@ -14,6 +14,7 @@ import { beyondEdge } from "./profile.js";
 
 const CLEAR_M = 4.4; // nothing grows nearer to the asphalt: the law's, and room for posts and signs
 const HOUSE_M = 17;
+const BUILDING_M = [13, 10]; // along the road, away from it
 const MIX_M = 320; // so long forest, avenue or meadow last
 
 /** @param {Site["road"]} road @param {number} s_m @param {boolean} left @returns {Country} */
@@ -73,13 +74,13 @@ const GROWTH = {
     const away = left ? 1 : -1;
     if (s_m % HOUSE_M === (left ? 0 : 8)) {
       const out = between(4.5, 8, chance(seed, 80));
-      plant(scene, s_m, left, out, (solid) => house(solid, seed, away));
+      build(scene, s_m, left, out, (solid) => house(solid, seed, away));
       plant(scene, s_m, left, 2.7, (solid) => hedge(solid, 9 + 3 * chance(seed, 81)));
       plant(scene, s_m + 13, left, out + 4, (solid) => leafTree(solid, seed, scene.detail, 0.7));
-      plant(scene, s_m, left, 28 + 8 * chance(seed, 82), (solid) => house(solid, seed + 1, away));
+      build(scene, s_m, left, 28 + 8 * chance(seed, 82), (solid) => house(solid, seed + 1, away));
     }
     const middle = village && Math.round((village.from_m + village.to_m) / 2) === s_m;
-    if (middle && !left) plant(scene, s_m, left, 24, (solid) => church(solid, away));
+    if (middle && !left) build(scene, s_m, left, 24, (solid) => church(solid, away));
   },
   bridge() {},
 };
@@ -106,16 +107,33 @@ function fence(scene, s_m, left) {
 /**
  * Stand on the ground beside the road; nothing where the road comes by again.
  * @param {Scene} scene @param {number} s_m @param {boolean} left @param {number} out_m beyond the asphalt
- * @param {(solid: MeshBuilder) => void} build
+ * @param {(solid: MeshBuilder) => void} raise
  */
-function plant({ site, height }, s_m, left, out_m, build) {
+function plant({ site, height }, s_m, left, out_m, raise) {
   const left_m = beyondEdge(site.section, left, out_m);
   const { x_m, y_m } = site.road.at(s_m, left_m);
   const land = height(x_m, y_m);
   if (land.distance_m < Math.abs(left_m) - 1) return;
   const solid = standAt(site, s_m, left_m);
   const verge = Math.max(land.z_m, solid.frame.z_m + vergeAt(out_m));
-  build(solid.stand({ ...solid.frame, z_m: out_m < VERGE_M ? verge : land.z_m }));
+  raise(solid.stand({ ...solid.frame, z_m: out_m < VERGE_M ? verge : land.z_m }));
+}
+
+/**
+ * The same for what is so large that the road could come by at its other end.
+ * @param {Scene} scene @param {number} s_m @param {boolean} left @param {number} out_m
+ * @param {(solid: MeshBuilder) => void} raise
+ */
+function build(scene, s_m, left, out_m, raise) {
+  const { road, section } = scene.site;
+  const { x_m, y_m, heading_rad } = road.at(s_m, beyondEdge(section, left, out_m));
+  const [cos, sin] = [Math.cos(heading_rad), Math.sin(heading_rad)];
+  const deep = left ? BUILDING_M[1] : -BUILDING_M[1];
+  const clear_m = Math.max(section.left_m, section.right_m) + PAVEMENT_M;
+  const free = [[BUILDING_M[0], 0], [BUILDING_M[0], deep], [0, deep]].every(
+    ([a, l]) => scene.height(x_m + a * cos - l * sin, y_m + a * sin + l * cos).distance_m > clear_m,
+  );
+  if (free) plant(scene, s_m, left, out_m, raise);
 }
 
 const VERGE_M = 9;

@@ -70,8 +70,20 @@ export class Strips {
   }
 }
 
-/** @param {number} from_m @param {number} to_m @param {number} step_m @returns {number[]} both ends are among them */
-export function placesBetween(from_m, to_m, step_m) {
+const STEP_M = 5;
+const BEND_STEP_M = 2;
+const BEND_PER_M = 1 / 100;
+
+/**
+ * Places close enough for a strip to look round.
+ * @param {RoadModel} road @param {number} from_m @param {number} to_m
+ * @returns {number[]} both ends are among them
+ */
+export function placesBetween(road, from_m, to_m) {
+  const bent = [from_m, (from_m + to_m) / 2, to_m].some(
+    (s_m) => Math.abs(road.curvatureAt(s_m)) > BEND_PER_M,
+  );
+  const step_m = bent ? BEND_STEP_M : STEP_M;
   const count = Math.max(Math.ceil((to_m - from_m) / step_m), 1);
   return Array.from({ length: count + 1 }, (_, k) => from_m + ((to_m - from_m) * k) / count);
 }

@@ -1,6 +1,7 @@
 // What the driver sees: the room's front door.
 import { Color, PerspectiveCamera, Scene, WebGLRenderer } from "../vendor/three.js";
-import { CAR_LENGTH_M, car } from "./car.js";
+import { Braking, brakes } from "./braking.js";
+import { CAR_LENGTH_M, Car } from "./car.js";
 import { look, setLens } from "./eye.js";
 import { Interior } from "./interior.js";
 import { SIGHT_M } from "./materials.js";
@@ -46,13 +47,14 @@ export class View {
     this.scene.background = new Color().setStyle(ZENITH, "srgb-linear");
     this.sky = sky();
     this.world = new World(road, software ? 1 : 8);
-    this.own = car(OWN_PAINT);
-    this.ahead = car(LEAD_PAINT);
+    this.own = new Car(OWN_PAINT);
+    this.ahead = new Car(LEAD_PAINT);
+    this.braking = new Braking();
     this.interior = new Interior(road.side);
     this.mirror = new Mirror(road.side);
     // A picture in the mirror costs as many corners as that of the road.
     this.mirrorEvery = software ? 4 : 2;
-    this.scene.add(this.sky, this.world.group, this.own, this.ahead, this.interior.group);
+    this.scene.add(this.sky, this.world.group, this.own.mesh, this.ahead.mesh, this.interior.group);
     this.frames = 0;
     this.resize();
   }
@@ -100,19 +102,23 @@ export class View {
     this.world.dispose();
     this.mirror.dispose();
     this.interior.dispose();
-    for (const part of [this.sky, this.own, this.ahead]) part.geometry.dispose();
+    this.sky.geometry.dispose();
+    for (const car of [this.own, this.ahead]) car.dispose();
     this.renderer.dispose();
   }
 
   /** @param {Sight} sight @param {{x_m: number, y_m: number}} origin */
   #cars(sight, origin) {
     const left_m = this.road.lane_m + sight.lateral_m;
-    this.own.visible = this.options.camera === "chase";
-    this.#park(this.own, sight.s_m, left_m, sight.heading_rad, origin);
-    this.ahead.visible = sight.lead !== null;
+    this.own.mesh.visible = this.options.camera === "chase";
+    this.own.brake(brakes(sight.acceleration_mps2 ?? 0));
+    this.#park(this.own.mesh, sight.s_m, left_m, sight.heading_rad, origin);
+    this.ahead.mesh.visible = sight.lead !== null;
     if (!sight.lead) return;
-    const front_m = sight.s_m + sight.lead.gap_m + CAR_LENGTH_M;
-    this.#park(this.ahead, front_m, this.road.lane_m, 0, origin);
+    const { s_m, speed_mps, lead } = sight;
+    this.ahead.brake(this.braking.ahead(s_m, speed_mps, lead.speed_mps ?? 0));
+    const front_m = s_m + lead.gap_m + CAR_LENGTH_M;
+    this.#park(this.ahead.mesh, front_m, this.road.lane_m, 0, origin);
   }
 
   /** @param {import("../vendor/three.js").Mesh} mesh @param {number} front_m @param {number} left_m @param {number} turn @param {{x_m: number, y_m: number}} origin */
