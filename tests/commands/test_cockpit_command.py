@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -36,6 +37,10 @@ sys.exit(cli.main(sys.argv[2:]))
 """
 
 
+# Its process cannot be told so without telling this one, too.
+told_to_end = pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT for one process")
+
+
 def started(fmu_folder: Path, *arguments: str) -> subprocess.Popen[str]:
     command = [sys.executable, "-c", COMMAND, str(fmu_folder), "cockpit", *arguments]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -52,6 +57,7 @@ def serving(fmu_folder: Path, tmp_path: Path) -> Iterator[tuple[subprocess.Popen
         process.wait()
 
 
+@told_to_end
 def test_it_serves_until_it_is_told_to_end(
     serving: tuple[subprocess.Popen[str], str], tmp_path: Path
 ) -> None:
@@ -79,6 +85,7 @@ def test_it_serves_until_it_is_told_to_end(
     assert err == "pldf: no models are compiled here\n"
 
 
+@told_to_end
 def test_another_address_and_another_study_are_told(fmu_folder: Path, tmp_path: Path) -> None:
     (tmp_path / "cockpit.toml").write_text("title = 'another'")
     process = started(fmu_folder, "--no-browser", "--bind", "0.0.0.0", "--out", str(tmp_path))

@@ -25,7 +25,7 @@ from .shared.telling import tell
 
 EXAMPLE: Final = (
     "pldf analyse out --report report.html\n"
-    "  pldf analyse cockpit-P07.zip cockpit-P08.zip\n"
+    "  pldf analyse desk1.zip desk2.zip\n"
     "  pldf analyse laboratory --route road.xodr --without P07 --figures paper --format pdf"
 )
 

@@ -19,7 +19,7 @@ EXAMPLE: Final = (
     "  pldf cockpit my_study.toml --out laboratory --language de\n"
     "      a study of one's own; then: pldf analyse laboratory\n"
     "  pldf cockpit my_study.toml --export cockpit.html\n"
-    "      one file that needs neither pldf nor network; then: pldf analyse cockpit-P07.zip"
+    "      one file that needs neither pldf nor network; then: pldf analyse pldf-cockpit.zip"
 )
 
 
