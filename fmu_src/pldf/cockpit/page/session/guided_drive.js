@@ -160,6 +160,7 @@ async function driveNow(session, setup, inputs) {
     tell: (state, reason) => session.tell(state, { reason }),
   });
   session.stopDrive = null;
+  session.tell("between", { reason: driven.result.reason });
   return driven;
 }
 
