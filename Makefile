@@ -67,9 +67,11 @@ build: $(BUILT)
 native: $(READY)
 	$(BIN)/pldf build --native --out dist
 
-# Without what an earlier build left in build/: setuptools would pack that, too.
+# With the FMUs as WebAssembly, so that the cockpit needs no compiler where the wheel is installed; and
+# without what an earlier build left in build/: setuptools would pack that, too.
 wheel: $(READY)
 	rm -rf build
+	$(BIN)/pldf build --wasm --out fmu_src/pldf/cockpit/page
 	$(BIN)/python -m build --wheel --no-isolation --outdir dist
 
 setup: $(READY)

@@ -30,6 +30,7 @@ from pldf.cosim.which_fmus import up_to_date
 from pldf.kernel.state import PldfState
 from road_times import road_times
 from study_times import study_times
+from wasm_times import wasm_times
 
 from vehicle_models.driver_state import DriverState
 from vehicle_models.vehicle_state import VehicleState
@@ -63,6 +64,7 @@ def main() -> int:
         "toppra_4.5_km_s": toppra_s(),
         "by_length": [_by_length(length_km) for length_km in LENGTHS_KM],
         "native": _native(options.dist),
+        "web_assembly": wasm_times(),
     }
     print(json.dumps(result, indent=2))
     return 0

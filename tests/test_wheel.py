@@ -30,8 +30,11 @@ def run(*command: object, folder: Path) -> None:
     assert result.returncode == 0, result.stdout
 
 
-def build_wheel(folder: Path) -> Path:
-    """Build from a copy: setuptools takes up what earlier builds left beside the sources."""
+def build_wheel(folder: Path, modules: Path) -> Path:
+    """Build as ``make wheel`` does, with these FMUs as WebAssembly.
+
+    From a copy: setuptools takes up what earlier builds left beside the sources.
+    """
     tree = folder / "tree"
     tree.mkdir()
     ignored = shutil.ignore_patterns("__pycache__", "*.egg-info")
@@ -40,6 +43,8 @@ def build_wheel(folder: Path) -> Path:
             shutil.copytree(ROOT / name, tree / name, ignore=ignored)
         else:
             shutil.copy(ROOT / name, tree)
+    page = tree / "fmu_src" / "pldf" / "cockpit" / "page"
+    shutil.copytree(modules, page / "wasm", dirs_exist_ok=True)
     run(sys.executable, "-m", "build", "--wheel", "--no-isolation", ".", folder=tree)
     (wheel,) = tree.glob("dist/*.whl")
     kept = Path(shutil.move(wheel, folder))
@@ -66,10 +71,10 @@ def install(wheel: Path, folder: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def python(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def python(tmp_path_factory: pytest.TempPathFactory, wasm_folder: Path) -> Path:
     """Return the interpreter of an environment with the wheel."""
     folder = tmp_path_factory.mktemp("wheel")
-    return install(build_wheel(folder), folder / "venv")
+    return install(build_wheel(folder, wasm_folder), folder / "venv")
 
 
 def run_tests(python: Path, name: str, folder: Path) -> None:

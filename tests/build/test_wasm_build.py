@@ -11,7 +11,7 @@ from pldf import cli
 from pldf.build.native import web_assembly
 from pldf.build.native.objects import compile_objects
 from pldf.build.native.symbols import fmi_functions, needed_by_object
-from pldf.build.native.wasm import PAGE, check_module
+from pldf.build.native.wasm import LICENCES, PAGE, check_module
 from pldf.build_version import build_version, native_making
 from pldf.cosim.platforms import WASM
 
@@ -57,6 +57,19 @@ def test_same_sources_give_the_same_bytes(wasm_folder: Path, tmp_path: Path) -> 
     for suffix in (".wasm", ".xml"):
         name = f"LongitudinalVehicle{suffix}"
         assert (tmp_path / "wasm" / name).read_bytes() == (wasm_folder / name).read_bytes()
+
+
+def test_licences_of_what_is_linked_are_beside_the_modules(wasm_folder: Path) -> None:
+    text = (wasm_folder / LICENCES).read_text(encoding="utf-8")
+    names = [line for line in text.splitlines() if line.startswith("# ")]
+    assert names == [
+        "# adaptive-pldf",
+        "# zig, compiler-rt",
+        "# wasi-libc",
+        "# cloudlibc, in wasi-libc",
+        "# musl, in wasi-libc",
+    ]
+    assert text.count("Permission is hereby granted") >= 4
 
 
 def test_object_needs_only_what_c_has() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -90,10 +91,9 @@ def test_text_with_signs_of_formats_is_told_as_it_is(function: WasmFmu) -> None:
 
 
 def test_road_is_a_file_that_the_page_gives(function: WasmFmu) -> None:
-    road = function.resources["route/1.prepared"]
+    road = function.resources["route/0.prepared"]
     expected = WasmSlave(function)
-    expected.set_named(function, {"route_id": 1})
-    by_file = WasmSlave(function, {"roads/mine.prepared": road})
+    by_file = WasmSlave(replace(function, resources={}), {"roads/mine.prepared": road})
     by_file.set_named(function, {"route_file": "roads/mine.prepared"})
     outputs = by_type(function, "output")
     for slave in (expected, by_file):

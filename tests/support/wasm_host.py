@@ -22,6 +22,7 @@ from pldf.cosim.kinds import WASM_FOLDER
 Status = int
 OK, WARNING, ERROR = 0, 1, 3
 RESOURCES: Final = "resources"
+_ENGINE: Final = wasmtime.Engine()
 _FORMATS: Final = {"Real": "d", "Integer": "i", "Boolean": "i"}
 
 
@@ -53,7 +54,7 @@ def wasm_modules(factory: pytest.TempPathFactory) -> Path:
 @cache
 def loaded(folder: Path, model: str) -> WasmFmu:
     """Return an FMU of this folder, compiled."""
-    module = wasmtime.Module.from_file(wasmtime.Engine(), str(folder / f"{model}.wasm"))
+    module = wasmtime.Module.from_file(_ENGINE, str(folder / f"{model}.wasm"))
     description = read_model_description(str(folder / f"{model}.xml"), validate=False)
     return WasmFmu(description, module, fmus.native_resources(model))
 
@@ -66,7 +67,7 @@ class WasmSlave:
     """
 
     def __init__(self, fmu: WasmFmu, files: Mapping[str, bytes] | None = None) -> None:
-        self._store = wasmtime.Store(fmu.module.engine)
+        self._store = wasmtime.Store(_ENGINE)
         exports: Any = wasmtime.Instance(self._store, fmu.module, []).exports(self._store)
         self._exports = exports
         self._memory: wasmtime.Memory = exports["memory"]

@@ -206,11 +206,16 @@ def _as_native(signal: Signal) -> Signal:
     return replace(signal, description=_TEXTS.get(signal.field, signal.description))
 
 
-def _licenses(targets: Sequence[str]) -> Iterator[tuple[str, bytes]]:
-    """Yield name and licence of what zig links into a library."""
+def zig_folder() -> Path:
+    """Return where zig is, with the C libraries that it brings."""
     zig = find_spec("ziglang")
     assert zig is not None and zig.submodule_search_locations
-    folder = Path(zig.submodule_search_locations[0])
+    return Path(zig.submodule_search_locations[0])
+
+
+def _licenses(targets: Sequence[str]) -> Iterator[tuple[str, bytes]]:
+    """Yield name and licence of what zig links into a library."""
+    folder = zig_folder()
     yield "zig", (folder / "LICENSE").read_bytes()
     if "x86_64-windows" in targets:
         yield "mingw-w64", (folder / "lib" / "libc" / "mingw" / "COPYING").read_bytes()

@@ -10,9 +10,9 @@ from typing import Final
 from ...cosim.platforms import WASM
 from ...files.disk import replace_file
 from ..archive import DESCRIPTION, guid_of, with_guid, with_version
-from ..builder import Announce
+from ..builder import Announce, license_of
 from . import web_assembly
-from .archives import NativeRecipe, description, made_of, write_tables
+from .archives import NativeRecipe, description, made_of, write_tables, zig_folder
 from .language import check_language
 from .linking import link
 from .model import NativeModel
@@ -30,10 +30,20 @@ PAGE: Final = frozenset(
 )  # fmt: skip
 _OF_LINKER: Final = frozenset({"__stack_pointer"})  # which --export-dynamic takes for ours
 SIZE_MAX: Final = 200_000
+LICENCES: Final = "LICENSES.txt"
+# What zig links into a module, and where its folder has the licence.
+_LINKED: Final = {
+    "zig, compiler-rt": "LICENSE",
+    "wasi-libc": "lib/libc/wasi/LICENSE-MIT",
+    "cloudlibc, in wasi-libc": "lib/libc/wasi/libc-bottom-half/cloudlibc/LICENSE",
+    "musl, in wasi-libc": "lib/libc/wasi/libc-top-half/musl/COPYRIGHT",
+}
 
 
 def build_wasm(recipe: NativeRecipe, out: Path, announce: Announce) -> list[Path]:
     """Write ``NAME.wasm`` and ``NAME.xml`` into folder ``out``, and return their paths.
+
+    Beside them stand the licences of what is in a module.
 
     Raises:
         ValueError: the kernel cannot be compiled, or the module would not run in every page.
@@ -56,7 +66,15 @@ def build_wasm(recipe: NativeRecipe, out: Path, announce: Announce) -> list[Path
     paths = [out / f"{model.name}{suffix}" for suffix in (".wasm", ".xml")]
     for path, content in zip(paths, (data, with_guid(described, guid)[DESCRIPTION]), strict=True):
         replace_file(path, content)
+    replace_file(out / LICENCES, _licences())
     return paths
+
+
+def _licences() -> bytes:
+    texts = {"adaptive-pldf": license_of("adaptive-pldf")}
+    texts |= {name: (zig_folder() / place).read_bytes() for name, place in _LINKED.items()}
+    parts = [f"# {name}\n\n".encode() + text.strip() + b"\n" for name, text in texts.items()]
+    return b"\n".join(parts).replace(b"\r\n", b"\n")
 
 
 def check_module(name: str, data: bytes) -> None:

@@ -49,9 +49,12 @@ export class Batch {
     return new KINDS[this.#kind].values(this.#module.memory.buffer, this.#address, this.#count);
   }
 
-  /** The numbers; ask for them anew after any call, since the memory moves when it grows. */
+  /**
+   * The numbers; ask for them anew after any call: the memory moves when it grows, and what lay in the
+   * old one has no length then (to ask the memory itself takes longer than a step).
+   */
   get values() {
-    if (this.#values.buffer !== this.#module.memory.buffer) this.#values = this.#view();
+    if (this.#values.length === 0) this.#values = this.#view();
     return this.#values;
   }
 
