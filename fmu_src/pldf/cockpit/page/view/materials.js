@@ -1,18 +1,17 @@
 // What faces are painted with: shaders of a few instructions, since on machines without a graphics
 // card the processor runs them for each of a million pixels. Colours are those of the screen
 // throughout; light is in the colours of the corners, haze is reckoned at the corners.
-import { BackSide, Color, FrontSide, ShaderMaterial } from "../vendor/three.js";
+import { DoubleSide, ShaderMaterial } from "../vendor/three.js";
 
 /** @typedef {import("../vendor/three.js").Texture} Texture */
 
 /** colour of the haze in which far things are lost */
-export const HAZE = "#b9cfd6";
+export const HAZE_HEX = 0xb9cfd6;
 /** so far one sees, and from where on the haze begins (m) */
 export const SIGHT_M = 1200;
 const CLEAR_M = 260;
 
-const haze = new Color().setStyle(HAZE, "srgb-linear"); // as written: no conversion
-const HAZE_GLSL = `vec3(${[haze.r, haze.g, haze.b].map((v) => v.toFixed(4)).join(", ")})`;
+const HAZE_GLSL = `vec3(${[16, 8, 0].map((bits) => (((HAZE_HEX >> bits) & 255) / 255).toFixed(4)).join(", ")})`;
 
 /**
  * @param {{picture?: boolean, light?: boolean, far?: boolean, cut?: boolean}} kind with a picture, with
@@ -73,12 +72,12 @@ export function plateOf(map) {
   });
 }
 
-/** A picture as it is. @param {Texture} map @param {boolean} [inside] of a sphere around us */
-export function pictureOf(map, inside = false) {
-  return new ShaderMaterial({
-    ...shaders({ picture: true }),
-    uniforms: { map: { value: map } },
-    side: inside ? BackSide : FrontSide,
-    depthWrite: !inside,
-  });
+/** A picture as it is. @param {Texture} map */
+export function pictureOf(map) {
+  return new ShaderMaterial({ ...shaders({ picture: true }), uniforms: { map: { value: map } } });
+}
+
+/** Colours behind all else. */
+export function skyPaint() {
+  return new ShaderMaterial({ ...shaders({ light: true }), side: DoubleSide, depthWrite: false });
 }

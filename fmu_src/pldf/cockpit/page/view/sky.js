@@ -1,88 +1,131 @@
-// The sky with far hills: a picture around everything, so far away that it never comes nearer.
-import { LinearFilter, Mesh, SphereGeometry } from "../vendor/three.js";
-import { chance, hills } from "./chance.js";
-import { HAZE, pictureOf } from "./materials.js";
-import { canvas, textureOf } from "./textures.js";
+// The sky with clouds and far hills, around everything and so far away that it never comes nearer.
+// It is painted without a picture: that takes half of the time on machines without a graphics card.
+import { BufferAttribute, BufferGeometry, Mesh } from "../vendor/three.js";
+import { between, chance, hills } from "./chance.js";
+import { HAZE_HEX, skyPaint } from "./materials.js";
+import { rgb } from "./mesh.js";
 
-const WIDTH = 4096;
-const HEIGHT = 1024;
-// The picture reaches from below the horizon to so far above it; the rest is plain.
-const BELOW_DEG = 8;
-const ABOVE_DEG = 62;
-const HORIZON = (HEIGHT * ABOVE_DEG) / (ABOVE_DEG + BELOW_DEG);
-export const ZENITH = "#3f7fc0";
+/** @typedef {[number, number, number]} Color red, green, blue: 0..1 */
+
+export const ZENITH = 0x3f7fc0;
 const RADIUS_M = 2000;
+const DEGREE = Math.PI / 180;
+const SIDES = 48;
+// Elevation in degrees, colour of the air there.
+const AIR = /** @type {[number, number][]} */ ([
+  [-8, HAZE_HEX], [0, HAZE_HEX], [4, 0xb6d3e6], [12, 0x9fc8e6], [28, 0x74abdb], [55, ZENITH], [90, ZENITH],
+]);
+const CLOUDS = 64;
+const PUFF_SIDES = 10;
+// Height in degrees, how many hills around, colour; from the farthest on.
+const RIDGES = [[6.4, 5, 0x93afc4, 1], [4.2, 8, 0x7d9fae, 2], [2.4, 13, 0x749a8c, 3]];
+const RIDGE_SIDES = 240;
+const FOOT_DEG = -0.6;
 
+/** @returns {Mesh} */
 export function sky() {
-  const { made, pen } = canvas(WIDTH, HEIGHT);
-  const air = pen.createLinearGradient(0, 0, 0, HORIZON);
-  air.addColorStop(0, ZENITH);
-  air.addColorStop(0.5, "#74abdb");
-  air.addColorStop(0.85, "#b4d3e8");
-  air.addColorStop(1, HAZE);
-  pen.fillStyle = air;
-  pen.fillRect(0, 0, WIDTH, HORIZON);
-  pen.fillStyle = HAZE;
-  pen.fillRect(0, HORIZON, WIDTH, HORIZON);
-  clouds(pen);
-  ridge(pen, 95, 5, "#93afc4", 1);
-  ridge(pen, 62, 8, "#7d9fae", 2);
-  ridge(pen, 36, 13, "#749a8c", 3);
-  const picture = textureOf(made);
-  picture.generateMipmaps = false;
-  picture.minFilter = LinearFilter;
-  const dome = new Mesh(band(), pictureOf(picture, true));
+  const paint = new Painter();
+  air(paint);
+  for (let k = 0; k < CLOUDS; k++) cloud(paint, k);
+  for (const [height, waves, hex, seed] of RIDGES) ridge(paint, height, waves, hex, seed);
+  const dome = new Mesh(paint.geometry(), skyPaint());
   dome.renderOrder = 2; // only where nothing is before it
   dome.frustumCulled = false;
   return dome;
 }
 
-function band() {
-  const [low, high] = [90 + BELOW_DEG, 90 - ABOVE_DEG].map((degrees) => (degrees * Math.PI) / 180);
-  return new SphereGeometry(RADIUS_M, 48, 16, 0, 2 * Math.PI, high, low - high);
-}
+/** Corners by azimuth and elevation in degrees; what comes later is painted over what came before. */
+class Painter {
+  constructor() {
+    /** @type {number[]} */
+    this.positions = [];
+    /** @type {number[]} */
+    this.colors = [];
+    /** @type {number[]} */
+    this.index = [];
+  }
 
-/** @param {CanvasRenderingContext2D} pen */
-function clouds(pen) {
-  for (let k = 0; k < 40; k++) {
-    const x = WIDTH * chance(k, 51);
-    const y = HORIZON * (0.35 + 0.56 * chance(k, 52));
-    const size = 16 + 130 * (1 - y / HORIZON) * (0.5 + chance(k, 53));
-    for (let puff = 0; puff < 26; puff++) {
-      const px = x + size * 4.5 * (chance(k, puff, 54) - 0.5);
-      const py = y - size * 0.5 * chance(k, puff, 55) + size * 0.2;
-      blob(pen, px, py, size * (0.35 + 0.6 * chance(k, puff, 56)));
+  /** @param {number} azimuth @param {number} elevation @param {Color} color @returns {number} which corner it is */
+  corner(azimuth, elevation, color) {
+    const [a, e] = [azimuth * DEGREE, elevation * DEGREE];
+    this.positions.push(
+      RADIUS_M * Math.cos(e) * Math.cos(a),
+      RADIUS_M * Math.sin(e),
+      -RADIUS_M * Math.cos(e) * Math.sin(a),
+    );
+    this.colors.push(...color);
+    return this.positions.length / 3 - 1;
+  }
+
+  /** A band between two rows of corners. @param {number[]} low @param {number[]} high */
+  band(low, high) {
+    for (let k = 1; k < low.length; k++) {
+      this.index.push(low[k - 1], low[k], high[k], low[k - 1], high[k], high[k - 1]);
     }
   }
-}
 
-/** @param {CanvasRenderingContext2D} pen @param {number} x @param {number} y @param {number} radius */
-function blob(pen, x, y, radius) {
-  for (const turn of [-WIDTH, 0, WIDTH]) {
-    const white = pen.createRadialGradient(x + turn, y, 0, x + turn, y, radius);
-    white.addColorStop(0, "rgba(255,255,255,0.34)");
-    white.addColorStop(1, "rgba(255,255,255,0)");
-    pen.fillStyle = white;
-    pen.fillRect(x + turn - radius, y - radius * 0.6, 2 * radius, 1.2 * radius);
+  geometry() {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(this.positions), 3));
+    geometry.setAttribute("color", new BufferAttribute(new Float32Array(this.colors), 3));
+    geometry.setIndex(this.index);
+    return geometry;
   }
 }
 
-/** @param {CanvasRenderingContext2D} pen @param {number} height @param {number} waves @param {string} color @param {number} seed */
-function ridge(pen, height, waves, color, seed) {
-  const misty = pen.createLinearGradient(0, HORIZON - height, 0, HORIZON);
-  misty.addColorStop(0, color);
-  misty.addColorStop(1, HAZE);
-  pen.fillStyle = misty;
-  pen.beginPath();
-  pen.moveTo(0, HORIZON + 6);
-  for (let x = 0; x <= WIDTH; x += 4) {
-    // Around the circle, so that both ends of the picture meet.
-    const turn = (2 * Math.PI * x) / WIDTH;
-    const [c, s] = [Math.cos(turn), Math.sin(turn)];
+/** @param {number} sides @returns {number[]} azimuths around, both ends */
+function around(sides) {
+  return Array.from({ length: sides + 1 }, (_, k) => (360 * k) / sides);
+}
+
+/** @param {Painter} paint */
+function air(paint) {
+  const rows = AIR.map(([elevation, hex]) =>
+    around(SIDES).map((azimuth) => paint.corner(azimuth, elevation, rgb(hex))),
+  );
+  for (let k = 1; k < rows.length; k++) paint.band(rows[k - 1], rows[k]);
+}
+
+/** Flat below, round above. @param {Painter} paint @param {number} seed */
+function cloud(paint, seed) {
+  const azimuth = 360 * chance(seed, 51);
+  const elevation = between(6, 34, chance(seed, 52) ** 1.4);
+  const size = elevation * between(0.07, 0.13, chance(seed, 53)) + 0.5;
+  const puffs = 4 + Math.floor(4 * chance(seed, 54));
+  for (let k = 0; k < puffs; k++) {
+    const share = (2 * (k + 0.5)) / puffs - 1;
+    const wide = size * between(0.8, 1.5, chance(seed, k, 55));
+    const high = size * (1.05 - 0.6 * Math.abs(share)) * between(0.7, 1.1, chance(seed, k, 56));
+    puff(paint, azimuth + share * size * 2.6, elevation, wide * 1.3, high);
+  }
+}
+
+/** @param {Painter} paint @param {number} azimuth @param {number} base @param {number} wide @param {number} high degrees */
+function puff(paint, azimuth, base, wide, high) {
+  const [white, grey] = [rgb(0xf7fafc), rgb(0xc9dbe8)];
+  const at = (/** @type {number} */ x, /** @type {number} */ y) => {
+    const light = Math.min(0.25 + (0.9 * y) / high, 1);
+    const color = /** @type {Color} */ (white.map((value, i) => between(grey[i], value, light)));
+    return paint.corner(azimuth + x / Math.cos(base * DEGREE), base + y, color);
+  };
+  const middle = at(0, 0.2 * high);
+  const rim = Array.from({ length: PUFF_SIDES + 1 }, (_, k) => {
+    const turn = (2 * Math.PI * k) / PUFF_SIDES;
+    return at(wide * Math.cos(turn), Math.max(high * Math.sin(turn), -0.14 * high));
+  });
+  for (let k = 1; k < rim.length; k++) paint.index.push(middle, rim[k - 1], rim[k]);
+}
+
+/** Hills, lost in haze below. @param {Painter} paint @param {number} height @param {number} waves @param {number} hex @param {number} seed */
+function ridge(paint, height, waves, hex, seed) {
+  const azimuths = around(RIDGE_SIDES);
+  const foot = azimuths.map((azimuth) => paint.corner(azimuth, FOOT_DEG, rgb(HAZE_HEX)));
+  const top = azimuths.map((azimuth) => {
+    // On a circle, so that both ends meet.
+    const [c, s] = [Math.cos(azimuth * DEGREE), Math.sin(azimuth * DEGREE)];
     const wide = hills(c * waves * 0.5 + 20, s * waves * 0.5 + 20, seed);
     const fine = hills(c * waves * 3 + 50, s * waves * 3 + 50, seed + 10);
-    pen.lineTo(x, HORIZON - height * (0.5 + 0.4 * wide + 0.1 * fine));
-  }
-  pen.lineTo(WIDTH, HORIZON + 6);
-  pen.fill();
+    return paint.corner(azimuth, height * (0.5 + 0.4 * wide + 0.1 * fine), rgb(hex));
+  });
+  paint.band(foot, top);
 }

@@ -5,6 +5,7 @@ import { CAR_LENGTH_M, Car } from "./car.js";
 import { look, setLens } from "./eye.js";
 import { Interior } from "./interior.js";
 import { SIGHT_M } from "./materials.js";
+import { rgb } from "./mesh.js";
 import { Mirror } from "./mirror.js";
 import { Sharpness, isSoftware } from "./sharpness.js";
 import { ZENITH, sky } from "./sky.js";
@@ -44,7 +45,7 @@ export class View {
     this.sharpness = new Sharpness(software ? 1 : Math.min(devicePixelRatio, 2), software);
     this.lens = new PerspectiveCamera(50, 1, NEAR_M, 2.2 * SIGHT_M);
     this.scene = new Scene();
-    this.scene.background = new Color().setStyle(ZENITH, "srgb-linear");
+    this.scene.background = new Color(...rgb(ZENITH));
     this.sky = sky();
     this.world = new World(road, software ? 1 : 8);
     this.own = new Car(OWN_PAINT);
