@@ -1,4 +1,4 @@
-"""The picture of the road, drawn in a browser by the processor."""
+"""The picture of the road, drawn in a browser by the processor, and what is heard."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from selenium import webdriver
 SIZE = (960, 540)
 SCRIPT = """
 import { roadOf } from "/engine/road.js";
+import { Sound } from "/view/sound.js";
 import { View } from "/view/view.js";
 
 const road = ROAD;
@@ -36,6 +37,19 @@ globalThis.picture = (s_m, changed = {}) => {
   view.frames = 0; // all that is in sight is built
   view.draw({ ...sight, s_m, ...changed });
   return canvas.toDataURL("image/png").split(",")[1];
+};
+// Instead of a loudspeaker: root of the mean square, and peak, of the second second.
+globalThis.heard = async (motion) => {
+  let context;
+  globalThis.AudioContext = function () {
+    context = new OfflineAudioContext(1, 2 * 44100, 44100);
+    context.resume = async () => {};
+    return context;
+  };
+  new Sound().play({ running: true, acceleration_mps2: 0, gas_pedal: 0.2, ...motion });
+  const samples = (await context.startRendering()).getChannelData(0).subarray(44100);
+  const peak = samples.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+  return [Math.sqrt(samples.reduce((sum, value) => sum + value * value, 0) / 44100), peak];
 };
 globalThis.ready = true;
 """
@@ -152,6 +166,22 @@ def test_the_other_camera_and_the_mirror(window: webdriver.Chrome) -> None:
     assert np.mean(np.any(picture(window, 300.0) != mirrored, axis=2)) > 0.5
     window.execute_script("view.options.mirror = false; view.camera = 'cockpit'")
     assert np.array_equal(picture(window, 300.0), plain)
+
+
+def heard(window: webdriver.Chrome, **motion: object) -> tuple[float, float]:
+    script = "heard(arguments[0]).then(arguments[1])"
+    loudness, peak = window.execute_async_script(script, motion)
+    return float(loudness), float(peak)
+
+
+def test_one_hears_how_fast_one_is(window: webdriver.Chrome) -> None:
+    (slow, _), (fast, _), (faster, peak) = (heard(window, speed_mps=v) for v in (14, 28, 40))
+    assert 0.0 < 1.3 * slow < fast
+    assert 1.2 * fast < faster
+    assert peak < 1.0
+    assert heard(window, speed_mps=14, gas_pedal=1)[0] > 1.5 * slow
+    assert heard(window, speed_mps=28, gas_pedal=1, acceleration_mps2=3)[1] < 1.0
+    assert heard(window, speed_mps=28, running=False)[0] < 1e-3
 
 
 def test_nothing_was_complained_about(window: webdriver.Chrome) -> None:

@@ -35,11 +35,11 @@ export class Motor {
     const share = clamp(speed_mps / FAST_MPS, 1.4);
     return {
       motor_hz: (rpm / 60) * IGNITIONS_PER_REVOLUTION,
-      motor: 0.12 + 0.38 * load + 0.1 * clamp(rpm / 5000),
+      motor: 0.05 + 0.2 * load + 0.1 * clamp(rpm / 5000),
       motor_tone_hz: 180 + 900 * load + 0.12 * rpm,
-      road: 0.55 * share ** 1.2,
+      road: 0.9 * share ** 1.2,
       road_tone_hz: 130 + 480 * share,
-      wind: 0.5 * share ** 2.4,
+      wind: 0.85 * share ** 2,
       wind_tone_hz: 350 + 900 * share,
     };
   }

@@ -3,7 +3,7 @@ import { Motor } from "./motor.js";
 
 const NOISE_S = 4;
 const FOLLOW_S = 0.07; // how fast the sound follows the car
-const LOUDNESS = 0.6;
+const LOUDNESS = 0.85;
 // Strengths of the motor's harmonics: uneven ones are weak in a motor of four cylinders.
 const HARMONICS = [0, 1, 0.55, 0.62, 0.35, 0.3, 0.16, 0.18, 0.08, 0.07];
 
