@@ -147,3 +147,11 @@ def test_what_an_fmu_refuses_is_told_in_its_words(window: webdriver.Chrome) -> N
     )
     told = window.execute_async_script(script, "model", "fast", 4500.0, "assisted")
     assert told.startswith("Error: AdaptivePLDF: x: there is no such file")
+
+
+def test_a_worker_that_breaks_ends_the_drive_and_says_so(window: webdriver.Chrome) -> None:
+    start(window, "person", "real", 4500.0, "assisted")
+    window.execute_script("client.worker.onerror({message: 'out of memory'})")
+    result = window.execute_script("return seen.result")
+    assert (result["ending"], result["reason"]) == ("failed", "out of memory")
+    assert window.execute_script("return client.worker") is None

@@ -1,10 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { Drive } from "../../../fmu_src/pldf/cockpit/page/engine/drive.js";
 import { Person, RELEASED } from "../../../fmu_src/pldf/cockpit/page/engine/person.js";
+import { Recorder } from "../../../fmu_src/pldf/cockpit/page/engine/recording.js";
 import { Run } from "../../../fmu_src/pldf/cockpit/page/engine/run.js";
-
-/** @typedef {import("../../../fmu_src/pldf/cockpit/page/engine/drive.js").Drive} Drive */
 
 const STEP_S = 0.01;
 
@@ -189,4 +189,21 @@ test("as fast as possible nothing is late, and others are heard in between", () 
   const { timing, interruptions } = run.finish(end);
   assert.deepEqual([timing.late_steps, timing.late_max_ms, interruptions], [0, 0, []]);
   assert.ok(Math.abs(timing.step_us - 1000) < 2);
+});
+
+test("a drive whose FMUs answer no more still leaves its recording", () => {
+  const silent = () => {
+    throw new WebAssembly.RuntimeError("unreachable");
+  };
+  const drive = Object.assign(Object.create(Drive.prototype), {
+    setup: { who: "person", device: "keyboard", steering: "assisted", profiles: { a: 1 } },
+    recorder: new Recorder(new Map([["vehicle.s_m", () => 5]]), new Map(), STEP_S),
+    driving: new Person(STEP_S, false),
+    coupling: { parts: new Map([["pldf", { instance: { messages: silent } }]]) },
+  });
+  drive.recorder.row();
+  const timing = { steps: 1, late_steps: 0, late_max_ms: 0, step_us: 0 };
+  const { recording, profiles, ending, messages } = drive.fail("unreachable", [], timing);
+  assert.match(recording, /\ntime_s,s_m\n0.0,5.0\n$/);
+  assert.deepEqual([profiles, ending, messages], [{ a: 1 }, "failed", []]);
 });

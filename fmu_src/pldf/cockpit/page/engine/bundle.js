@@ -1,7 +1,15 @@
 // All that the page needs to know, from the page itself or from its server; bytes come as base64.
 
 /** @typedef {import("../types.js").Bundle} Bundle */
-/** @typedef {import("../types.js").Files} Files */
+/** @typedef {import("../types.js").Model} Model */
+/** @typedef {import("../types.js").Part} Part */
+/** @typedef {import("../types.js").Road} Road */
+/** @typedef {Omit<Model, "wasm" | "resources"> & {wasm: string, resources: Record<string, string>}} ModelAsTold */
+/** @typedef {Omit<Road, "prepared"> & {prepared: string}} RoadAsTold */
+/**
+ * A bundle as JSON tells it: bytes are base64.
+ * @typedef {Omit<Bundle, "models" | "road"> & {models: Record<Part, ModelAsTold>, road: RoadAsTold}} BundleAsTold
+ */
 
 const IN_PAGE = "bundle";
 const ON_SERVER = "api/bundle";
@@ -25,7 +33,7 @@ export async function loadBundle() {
 
 /**
  * Return a bundle with bytes in place of texts of base64.
- * @param {any} told as JSON tells it
+ * @param {BundleAsTold} told
  * @returns {Bundle}
  */
 export function decoded(told) {
@@ -34,12 +42,12 @@ export function decoded(told) {
   return { ...told, models: Object.fromEntries(models), road };
 }
 
-/** @param {any} model */
+/**
+ * @param {ModelAsTold} model
+ * @returns {Model}
+ */
 function withBytes(model) {
-  const resources = Object.entries(model.resources ?? {}).map(([path, text]) => [
-    path,
-    bytesOf(/** @type {string} */ (text)),
-  ]);
+  const resources = Object.entries(model.resources).map(([path, text]) => [path, bytesOf(text)]);
   return { ...model, wasm: bytesOf(model.wasm), resources: Object.fromEntries(resources) };
 }
 

@@ -33,6 +33,8 @@ export class DriveClient {
     this.onended = () => {};
     /** @type {Worker | null} */
     this.worker = null;
+    /** @type {DriveSetup | null} of the drive that has begun and not ended */
+    this.driving = null;
     /** @type {Waiting<void>} */
     this.started = waiting();
     /** @type {Waiting<Files>} */
@@ -53,6 +55,10 @@ export class DriveClient {
    */
   start(bundle, setup) {
     this.started = waiting();
+    this.started.promise.then(
+      () => (this.driving = setup),
+      () => {},
+    );
     document.addEventListener("visibilitychange", this.hide);
     this.tell({ kind: "start", bundle: partOf(bundle), setup });
     return this.started.promise;
@@ -113,7 +119,7 @@ export class DriveClient {
     if (this.worker === null) {
       this.worker = new Worker(workerUrl(), { type: "module" });
       this.worker.onmessage = ({ data }) => this.hear(data);
-      this.worker.onerror = (event) => this.refuse(event.message);
+      this.worker.onerror = (event) => this.lose(event.message);
     }
     this.worker.postMessage(told);
   }
@@ -129,13 +135,19 @@ export class DriveClient {
     } else if (said.kind === "resumed") {
       this.onresumed();
     } else if (said.kind === "ended") {
-      document.removeEventListener("visibilitychange", this.hide);
-      this.onended(said.result);
+      this.end(said.result);
     } else if (said.kind === "forgotten") {
       this.forgotten.keep(said.profiles);
     } else {
       this.refuse(said.reason);
     }
+  }
+
+  /** @param {DriveResult} result */
+  end(result) {
+    document.removeEventListener("visibilitychange", this.hide);
+    this.driving = null;
+    this.onended(result);
   }
 
   /** @param {string} reason */
@@ -144,6 +156,18 @@ export class DriveClient {
     const error = new Error(reason);
     this.started.breakIt(error);
     this.forgotten.breakIt(error);
+  }
+
+  /**
+   * The worker is gone, and with it what the drive had recorded.
+   * @param {string} reason
+   */
+  lose(reason) {
+    this.refuse(reason);
+    if (this.driving !== null) {
+      this.end(nothingLeft(this.driving, reason));
+    }
+    this.dispose();
   }
 }
 
@@ -163,6 +187,25 @@ function waiting() {
   });
   promise.catch(() => {});
   return { promise, keep, breakIt };
+}
+
+/**
+ * @param {DriveSetup} setup
+ * @param {string} reason
+ * @returns {DriveResult}
+ */
+function nothingLeft({ profiles }, reason) {
+  return {
+    recording: "",
+    inputs: [],
+    profiles,
+    outputs: {},
+    messages: [],
+    interruptions: [],
+    timing: { steps: 0, late_steps: 0, late_max_ms: 0, step_us: 0 },
+    ending: "failed",
+    reason,
+  };
 }
 
 /**

@@ -138,18 +138,23 @@ export class Drive {
     }
     const profiles = profilesOf(this.coupling.part("pldf").instance.files());
     const left = this.left(end, interruptions, timing);
-    return { ...left, profiles, outputs: this.outputs() };
+    return { ...left, profiles, outputs: this.outputs(), messages: this.messages() };
   }
 
   /**
-   * Return what a drive leaves that failed: nothing was learned, nobody can be asked.
+   * Return what a drive leaves that failed: nothing was learned, and the FMUs need not answer.
    * @param {string} reason
    * @param {Interruption[]} interruptions
    * @param {DriveResult["timing"]} timing
    * @returns {DriveResult}
    */
   fail(reason, interruptions, timing) {
-    return this.left({ ending: "failed", reason }, interruptions, timing);
+    const left = this.left({ ending: "failed", reason }, interruptions, timing);
+    try {
+      return { ...left, messages: this.messages() };
+    } catch {
+      return left;
+    }
   }
 
   /**
@@ -164,7 +169,7 @@ export class Drive {
       inputs: this.driving?.changes ?? [],
       profiles: this.setup.profiles,
       outputs: {},
-      messages: this.messages(),
+      messages: [],
       interruptions,
       timing,
       ending,

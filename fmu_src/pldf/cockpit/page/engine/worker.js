@@ -50,6 +50,7 @@ function say(said) {
  * @param {DriveSetup} setup
  */
 async function start(bundle, setup) {
+  clearInterval(timer);
   const drive = await Drive.begin(bundle, setup);
   const started = new Run(drive, () => performance.now());
   run = started;
