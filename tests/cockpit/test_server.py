@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from pldf.cockpit.live import MESSAGE_MAX
+from pldf.cockpit.live import MESSAGE_MAX, Window
 from pldf.cockpit.server import PAGE, Cockpit, application, listen
 from pldf.errors import ModelError
 from pldf.roads.load import DATA
@@ -183,6 +183,27 @@ def test_viewers_hear_what_a_drive_tells_and_late_ones_the_last_of_it(asked: Tes
             assert [late.receive_json() for _ in range(2)] == [status, frame]
         viewer.send_text('{"kind": "abort", "participant": "P07", "reason": "unwell"}')
         assert driver.receive_json()["reason"] == "unwell"
+
+
+def test_a_viewer_that_does_not_listen_holds_nobody_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pldf.cockpit.live._WAITING_MAX", 3)
+    window = Window()
+    told = [("frame", "1"), ("status", "a"), ("frame", "2"), ("frame", "3"), ("status", "b")]
+    for kind, text in told:
+        window.tell(kind, text)
+    assert list(window.waiting) == ["a", "2", "b"]  # "3" had no room, "1" made room for "b"
+
+
+def test_more_windows_than_anybody_needs(
+    asked: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pldf.cockpit.live._WINDOWS_MAX", 1)
+    with asked.websocket_connect(LIVE), asked.websocket_connect(LIVE) as second:
+        with pytest.raises(WebSocketDisconnect) as closed:
+            second.receive_text()
+        assert closed.value.reason == "too many windows are open"
+    with asked.websocket_connect(LIVE) as free_again:
+        free_again.send_text('{"values": {}}')
 
 
 def test_a_simulator_feeds_clusters(asked: TestClient) -> None:

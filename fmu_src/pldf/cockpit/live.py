@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+from collections import deque
 from contextlib import suppress
 from http import HTTPStatus
 from typing import Any, Final
@@ -16,7 +17,7 @@ MESSAGE_MAX: Final = 65_536
 KINDS: Final = ("frame", "status", "abort")
 _KEPT: Final = ("frame", "status")  # the last of them is told to who comes later
 _WAITING_MAX: Final = 200
-_CLIENTS_MAX: Final = 50
+_WINDOWS_MAX: Final = 50
 _PARTICIPANTS_MAX: Final = 1000
 _TRY_AGAIN_LATER: Final = 1013  # of WebSocket
 _UNUSABLE: Final = 1007
@@ -26,10 +27,10 @@ class Live:
     """The windows that are open, and what they were told last."""
 
     def __init__(self) -> None:
-        self._clients: set[_Client] = set()
+        self._windows: set[Window] = set()
         self._last: dict[tuple[str, str], str] = {}
 
-    def tell(self, text: str, teller: _Client | None = None) -> None:
+    def tell(self, text: str, teller: Window | None = None) -> None:
         """Tell a message to everybody else.
 
         Raises:
@@ -40,51 +41,61 @@ class Live:
             self._last[kind, participant] = text
             while len(self._last) > _PARTICIPANTS_MAX:
                 del self._last[next(iter(self._last))]
-        for client in self._clients - {teller}:
-            client.tell(kind, text)
+        for window in self._windows - {teller}:
+            window.tell(kind, text)
 
     async def serve(self, socket: WebSocket) -> None:
         """Take and give messages until the window closes."""
         await socket.accept()
-        if len(self._clients) >= _CLIENTS_MAX:
+        if len(self._windows) >= _WINDOWS_MAX:
             await socket.close(_TRY_AGAIN_LATER, "too many windows are open")
             return
-        client = _Client()
+        window = Window()
         for (kind, _), text in self._last.items():
-            client.tell(kind, text)
-        self._clients.add(client)
-        telling = asyncio.create_task(client.run(socket))
+            window.tell(kind, text)
+        self._windows.add(window)
+        telling = asyncio.create_task(window.run(socket))
         try:
             while True:
-                self.tell(await socket.receive_text(), client)
+                self.tell(await socket.receive_text(), window)
         except WebSocketDisconnect:
             pass
         except (Refused, KeyError) as problem:  # KeyError: bytes instead of text
             with suppress(RuntimeError):
                 await socket.close(_UNUSABLE, str(problem)[:100])
         finally:
-            self._clients.discard(client)
+            self._windows.discard(window)
             telling.cancel()
 
 
-class _Client:
-    """A window with what it has not been told yet."""
+class Window:
+    """A window with what it has not been told yet.
+
+    Attributes:
+        waiting: the texts, in order.
+    """
 
     def __init__(self) -> None:
-        self._waiting: asyncio.Queue[str] = asyncio.Queue(_WAITING_MAX)
+        self.waiting: deque[str] = deque()
+        self._some = asyncio.Event()
 
     def tell(self, kind: str, text: str) -> None:
         """Tell it when it has time; frames that it has no time for are left out."""
-        if self._waiting.full():
+        if len(self.waiting) >= _WAITING_MAX:
             if kind == "frame":
                 return
-            self._waiting.get_nowait()
-        self._waiting.put_nowait(text)
+            self.waiting.popleft()
+        self.waiting.append(text)
+        self._some.set()
 
     async def run(self, socket: WebSocket) -> None:
+        """Tell what waits until the window closes."""
         with suppress(WebSocketDisconnect, RuntimeError):  # closed while something is told
             while True:
-                await socket.send_text(await self._waiting.get())
+                await self._some.wait()
+                self._some.clear()
+                while self.waiting:
+                    await socket.send_text(self.waiting.popleft())
 
 
 def checked(text: str) -> tuple[str, str, str]:
