@@ -24,6 +24,7 @@ def empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Return an empty folder, the current one, with a cache of its own and no store."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PLDF_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr("pldf.cockpit.wasm_models.PACKED", tmp_path / "no wheel made this")
     monkeypatch.delenv("PLDF_PROFILE_STORE", raising=False)
     return tmp_path
 
@@ -63,6 +64,7 @@ def test_it_says_what_is_installed_and_where(empty: Path, capsys: Capture) -> No
     assert found["compiler"] == f"zig for native FMUs: {version('ziglang').partition('.post')[0]}"
     assert found["sources"] == build_version()
     assert found["FMUs"].startswith(f"none yet; the first drive builds them into {empty / 'cache'}")
+    assert found["cockpit"].startswith("none yet; 'pldf cockpit' compiles its FMUs")
     assert found["profiles"].startswith("PLDF_PROFILE_STORE is not set")
     assert found["cache"].startswith(str(empty / "cache"))
     assert found["error"] == ""
@@ -81,6 +83,7 @@ def test_a_missing_extra_is_no_error_and_says_how_to_get_it(
         "parquet: pyarrow is missing; if you need it: pip install 'adaptive-pldf[parquet]'"
     )
     assert found["compiler"].startswith("none for native FMUs")
+    assert found["cockpit"].startswith("no FMUs as WebAssembly; compiling them needs the extra")
 
 
 def test_a_missing_or_old_dependency_is_an_error(

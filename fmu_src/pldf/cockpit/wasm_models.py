@@ -45,19 +45,27 @@ def wasm_models(announce: Callable[[str], None] = lambda _: None) -> dict[str, W
     Raises:
         ModelError: there are none, and nothing to compile them with; or that fails.
     """
-    cached = user_cache() / f"wasm-{build_version()}-{native_making()}"
-    for folder in (PACKED, cached):
+    for folder in (PACKED, _cached()):
         found = _read(folder)
         if found is not None:
             return found
     with tempfile.TemporaryDirectory(prefix="wasm_") as temporary:
         made = _compile(Path(temporary), announce)
     with suppress(OSError):  # compiled anew next time: slower, not wrong
-        cached.mkdir(parents=True, exist_ok=True)
+        _cached().mkdir(parents=True, exist_ok=True)
         for model in made.values():
             for suffix, content in zip(_SUFFIXES, model[1:], strict=True):
-                replace_file(cached / f"{model.name}{suffix}", content)
+                replace_file(_cached() / f"{model.name}{suffix}", content)
     return made
+
+
+def place_of_models() -> Path | None:
+    """Return the folder with the four FMUs; None: they are yet to be compiled."""
+    return next((folder for folder in (PACKED, _cached()) if _read(folder)), None)
+
+
+def _cached() -> Path:
+    return user_cache() / f"wasm-{build_version()}-{native_making()}"
 
 
 def _read(folder: Path) -> dict[str, WasmModel] | None:

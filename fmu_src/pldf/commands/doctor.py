@@ -55,6 +55,7 @@ def run(_: argparse.Namespace) -> None:
         _extras,
         _compiler,
         _fmus,
+        _cockpit,
         _store,
         _cache,
     )
@@ -149,6 +150,23 @@ def _fmus(findings: Findings) -> None:
     findings.add("FMUs", f"{choice.kind}, in {choice.folder.resolve()}")
     for note in choice.notes:
         findings.add("FMUs", note)
+
+
+def _cockpit(findings: Findings) -> None:
+    """Say where the FMUs of the cockpit's page are, without compiling any."""
+    try:
+        from ..cockpit.wasm_models import place_of_models  # noqa: PLC0415 - as above
+
+        place = place_of_models()
+    except ImportError as problem:
+        findings.add_broken("cockpit", str(problem))
+        return
+    if place:
+        findings.add("cockpit", f"FMUs as WebAssembly, in {place}")
+    elif _state(Requirement("ziglang"))[1]:
+        findings.add("cockpit", "none yet; 'pldf cockpit' compiles its FMUs once, for minutes")
+    else:
+        findings.add("cockpit", "no FMUs as WebAssembly; compiling them needs the extra native")
 
 
 def _store(findings: Findings) -> None:
