@@ -64,6 +64,7 @@ def test_a_simulator_needs_to_tell_nothing_but_values(
 ) -> None:
     opened(window, address, "cluster.html?participant=&explanation=text&unit=MPH&language=de")
     assert window.execute_script(f"return {NOTE}") == "Wartet auf eine Fahrt"
+    assert window.title == "Kombiinstrument"
     message = {"time_s": 1.0, "values": values()}
     tell(address, message)
     wait(window, f"{SPEED} === '38'")

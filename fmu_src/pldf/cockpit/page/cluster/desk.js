@@ -36,6 +36,7 @@ export class Desk {
     this.cards = element("div", { class: "desk-cards" });
     this.nobody = element("p", { class: "desk-nobody" }, words("nobody"));
     this.lost = element("p", { class: "desk-lost", role: "alert" });
+    document.title = words("title");
     fill(parent, element("h1", {}, words("title")), this.lost, this.nobody, this.cards);
     setInterval(() => this.show(), LOOK_MS);
   }

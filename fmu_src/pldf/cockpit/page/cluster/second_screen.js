@@ -23,11 +23,11 @@ const LOOK_MS = 500;
 
 const words = wording({
   en: {
-    waiting: "Waiting for a drive", stale: "No news from the drive",
+    title: "Instrument cluster", waiting: "Waiting for a drive", stale: "No news from the drive",
     lost: "No connection to the server: is pldf cockpit still running?", paused: "Paused",
   },
   de: {
-    waiting: "Wartet auf eine Fahrt", stale: "Keine Nachricht von der Fahrt",
+    title: "Kombiinstrument", waiting: "Wartet auf eine Fahrt", stale: "Keine Nachricht von der Fahrt",
     lost: "Keine Verbindung zum Server: Läuft pldf cockpit noch?", paused: "Angehalten",
   },
 });
@@ -120,6 +120,7 @@ export class SecondScreen {
     if (wish === this.made) return;
     this.made = wish;
     speak(language);
+    document.title = words("title");
     this.cluster = new Cluster(this.place, this.texts, { explanation, unit });
   }
 }
