@@ -44,6 +44,17 @@ test("a drive waits for its driver, and that is no interruption", () => {
   assert.deepEqual(run.interruptions, []);
 });
 
+test("a drive that has not begun can be held back, and that is no interruption, either", () => {
+  const { time, drive, run } = standing();
+  assert.equal(run.pause("hidden"), true);
+  assert.equal(run.pause("asked for"), false);
+  assert.equal(run.paused?.reason, "hidden");
+  time.now_ms += 9000;
+  run.resume();
+  run.tick();
+  assert.deepEqual([drive.steps, run.interruptions], [1, []]);
+});
+
 test("in real time 10 s take 10 s, however jittered", () => {
   const { time, drive, run } = standing();
   run.resume();

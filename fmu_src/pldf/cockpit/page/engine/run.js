@@ -32,6 +32,7 @@ export class Run {
     this.interruptions = [];
     /** @type {{reason: string, since_ms: number} | null} */
     this.paused = { reason: READY, since_ms: clock_ms() };
+    this.begun = false;
     this.lost_ms = 0;
     this.late_steps = 0;
     this.late_max_ms = 0;
@@ -57,10 +58,10 @@ export class Run {
    * Let the drive stand.
    * @param {string} reason
    * @param {number} [since_ms] it stands since then
-   * @returns {boolean} false: it stood already
+   * @returns {boolean} false: it stood already, and not only because it has not begun
    */
   pause(reason, since_ms = this.clock_ms()) {
-    if (this.paused !== null) {
+    if (this.paused !== null && this.paused.reason !== READY) {
       return false;
     }
     this.paused = { reason, since_ms };
@@ -75,6 +76,7 @@ export class Run {
     }
     const now_ms = this.clock_ms();
     this.keepPause(now_ms);
+    this.begun = true;
     this.lost_ms = 0;
     this.heard_ms = Math.max(this.heard_ms, now_ms);
     this.steps.start(now_ms);
@@ -159,7 +161,7 @@ export class Run {
    * @param {number} now_ms
    */
   keepPause(now_ms) {
-    if (this.paused !== null && this.paused.reason !== READY) {
+    if (this.paused !== null && this.begun) {
       this.keep(now_ms - this.paused.since_ms, this.paused.reason);
     }
     this.paused = null;
