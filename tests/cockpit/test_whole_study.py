@@ -7,6 +7,7 @@ import csv
 import os
 import random
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -55,6 +56,9 @@ window.press = (button, value) => {
 };
 """
 GAS, BRAKE = 7, 6  # of a standard gamepad
+NEVER_DRIVEN = "participant,phase,reason\n" + "".join(
+    f"{who},{phase},not part of this study\n" for who in ("P01", "P02") for phase in ("A1", "B2")
+)
 OVER = "return !document.querySelector('.drive')"
 GO_ON = "document.querySelector('dialog[open] button.main')?.click()"
 
@@ -209,12 +213,26 @@ def test_the_questionnaire_has_all_answers(done: Driven) -> None:
     assert all(row[f"laan_{item}"] == "2" for row in rows for item in range(1, 10))
 
 
-def test_pldf_analyse_reads_the_folder_as_it_is(done: Driven) -> None:
-    never = ["--without", "P01_A1", "--without", "P01_B2"]
-    text = run("analyse", str(done.folder), *never)
-    scores = re.findall(r"usefulness.*", text)
-    assert scores, text
-    assert (done.folder / "analysis/tests.csv").is_file()
+def test_pldf_analyse_reads_the_folder_as_it_is(done: Driven, tmp_path: Path) -> None:
+    folder = tmp_path / "laboratory"
+    shutil.copytree(done.folder, folder)
+    add_somebody(folder)
+    (folder / "exclusions.csv").write_text(NEVER_DRIVEN, encoding="utf-8")
+    told = run("analyse", str(folder))
+    with (folder / "analysis/tests.csv").open(encoding="utf-8", newline="") as file:
+        counts = {row["measure"]: row["participants"] for row in csv.DictReader(file)}
+    assert counts["combined"] == counts["usefulness"] == "2", told
+
+
+def add_somebody(folder: Path) -> None:
+    """Let P02 have answered like P01 and driven a little less far: an analysis needs two people."""
+    for path in sorted(folder.glob("recordings/P01_*.csv")):
+        lines = path.read_text(encoding="utf-8").splitlines(keepends=True)[:-10]
+        path.with_name(path.name.replace("P01", "P02")).write_text("".join(lines), encoding="utf-8")
+    answers = folder / "questionnaire.csv"
+    head, *rows = answers.read_text(encoding="utf-8").splitlines()
+    theirs = [row.replace("P01", "P02") for row in rows]
+    answers.write_text("\n".join([head, *rows, *theirs, ""]), encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
