@@ -19,6 +19,7 @@ from pldf.cosim.master import Drive, drive
 from pldf.cosim.values import Value
 from pldf.profiles.store import Iteration, read_profile
 from pldf.recordings.recording import Recording, read_recording, recording_csv
+from pldf.study.phases import TRAFFIC
 from repeated_person import drive_again, read_changes
 
 DRIVER = "tests/cockpit/javascript/engine_driven.mjs"
@@ -194,6 +195,20 @@ def test_the_driver_fmu_drives_as_in_python(
         written = (folder / phase / "recording.csv").read_bytes()
         assert written == as_written(one.recording, ())
     assert profiles(folder / "B1" / "profiles") == profiles(tmp_path)
+
+
+def test_a_car_ahead_drives_along_if_the_plan_has_one(
+    page: Page, tmp_path: Path, native_traffic_fmus: dict[str, Fmu]
+) -> None:
+    lead: dict[str, Value] = {"kind": TRAFFIC, "seed": 3}
+    setup = page.setup("A1", MODEL)
+    setup["values"]["lead"] = {**lead, "route_file": "road.prepared"}
+    recording = page.drive([setup], "traffic") / "A1" / "recording.csv"
+    values = page.natively("A1", tmp_path)
+    values["lead"] = {**lead, "route_file": str(page.road)}
+    one = drive(native_traffic_fmus, values, page.plan["end_m"], 0.01)
+    assert np.any(one.recording["lead_present"])
+    assert recording.read_bytes() == as_written(one.recording, ())
 
 
 def press(fmu: Fmu, values: Mapping[str, Value], button: str, s_m: float) -> None:
