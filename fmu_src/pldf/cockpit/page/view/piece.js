@@ -41,7 +41,8 @@ const WATER = 0x7fa9bf;
 /** @param {Kit} kit @param {number} k which piece @param {import("./plants.js").Detail} detail */
 export function piece(kit, k, detail) {
   const { road, section } = kit;
-  const [from_m, to_m] = [k * PIECE_M, Math.min((k + 1) * PIECE_M, road.length_m)];
+  const { ground } = kit;
+  const [from_m, to_m] = [Math.max(k * PIECE_M, ground.from_m), Math.min((k + 1) * PIECE_M, ground.to_m)];
   const start = road.at(from_m);
   const origin = { x_m: start.x_m, y_m: start.y_m };
   const solid = new MeshBuilder(origin);
@@ -53,7 +54,7 @@ export function piece(kit, k, detail) {
   furniture(kit, site, from_m, to_m).forEach(put);
   bridges(kit, site, from_m, to_m);
   const middle = road.at((from_m + to_m) / 2);
-  const height = kit.ground.around(middle.x_m, middle.y_m, PIECE_M);
+  const height = ground.around(middle.x_m, middle.y_m, PIECE_M);
   grow({ site, height, detail }, from_m, to_m);
   put(solid.mesh());
   return { group, origin };

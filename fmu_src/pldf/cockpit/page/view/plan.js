@@ -1,4 +1,5 @@
 // What stands along a road, and where: from its limits, curves, villages and bridges alone.
+import { BEYOND_M } from "./profile.js";
 
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
 /** @typedef {{from_m: number, to_m: number, left: boolean, sharp: boolean}} Curve that asks for less speed than its limit */
@@ -138,7 +139,8 @@ function bridgeRails(road) {
 /** @param {RoadModel} road @returns {number[]} */
 function postsOf(road) {
   const posts = [];
-  for (let s_m = POST_BEND_M; s_m < road.length_m; s_m += postSpacing(road, s_m)) {
+  const end_m = road.length_m + BEYOND_M.behind;
+  for (let s_m = POST_BEND_M - BEYOND_M.before; s_m < end_m; s_m += postSpacing(road, s_m)) {
     if (!road.stretchAt("village", s_m) && !road.stretchAt("bridge", s_m)) posts.push(s_m);
   }
   return posts;

@@ -8,6 +8,8 @@ export const MARGIN_M = 0.5; // asphalt beyond the edge line
 export const PAVEMENT_M = 2;
 export const KERB_M = 0.12;
 export const PARAPET_M = 1.1;
+/** so far the road is drawn beyond its ends: what a mirror shows at the start, what is in sight at the end */
+export const BEYOND_M = { before: 300, behind: 1300 };
 
 /** @param {RoadModel} road @returns {CrossSection} */
 export function crossSection(road) {

@@ -74,10 +74,11 @@ export class World {
 
   /** @param {number} s_m */
   #pieces(s_m) {
-    const last = Math.ceil(this.road.length_m / PIECE_M) - 1;
+    const { ground } = this.kit;
+    const [first, last] = [Math.floor(ground.from_m / PIECE_M), Math.ceil(ground.to_m / PIECE_M) - 1];
     const [from, to] = [s_m - BEHIND_M, s_m + SIGHT_M].map((at) => Math.floor(at / PIECE_M));
     const wanted = [];
-    for (let k = Math.max(from, 0); k <= Math.min(to, last); k++) {
+    for (let k = Math.max(from, first); k <= Math.min(to, last); k++) {
       const middle = (k + 0.5) * PIECE_M;
       const distance_m = Math.abs(middle - s_m);
       const detail = middle < s_m - PIECE_M ? far(distance_m) : detailAt(distance_m);
