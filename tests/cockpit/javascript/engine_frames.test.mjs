@@ -119,5 +119,5 @@ test("a car that is not steered leaves its lane in a curve, one that is steered 
     return lateral.lateral_m;
   };
   assert.equal(drive(0), -3); // a left curve carries it out to the right, to the edge and a metre
-  assert.ok(Math.abs(drive(curve_per_m / (6 / 400))) < 0.01);
+  assert.ok(Math.abs(drive(curve_per_m / (4 / 400))) < 0.01);
 });

@@ -2,7 +2,7 @@
 // It shows what steering does and feeds no FMU: the way along the road is the vehicle FMU's alone.
 
 /** Lateral acceleration of a full turn of the wheel, in m/s2; slow cars turn by curvature. */
-const LATERAL_MAX_MPS2 = 6.0;
+const LATERAL_MAX_MPS2 = 4.0;
 const CURVATURE_MAX_PER_M = 0.1;
 /** How fast the wheel that nobody turns brings the car back along the road, per second. */
 const ALIGNING_PER_S = 1.2;

@@ -41,7 +41,7 @@ const WRITTEN_INTO = "input, select, textarea, [contenteditable]";
 /** Travel per second of a pedal that is pressed, and that is let go. */
 const PEDAL_RATES = Object.freeze({ gas: [0.7, 3], brake: [0.9, 4] });
 /** Travel per second of the wheel, turned and let go. */
-const WHEEL_RATES = [1.5, 3];
+const WHEEL_RATES = [1, 4];
 /** A moment without a picture moves pedals and wheel by no more than this many ms of it. */
 const MOVED_MAX_MS = 100;
 
