@@ -136,6 +136,19 @@ test("a control that is taken is not found again, though its pedal is still pres
   assert.equal(calibrating.travel, 0);
 });
 
+test("gas and brake may share an axis, one each way", () => {
+  const calibrating = new Calibrating(device([0, 0, 0]));
+  for (const pressed of [device([0, -1, 0]), device([0, 1, 0])]) {
+    calibrating.look(pressed);
+    calibrating.look(device([0, 0, 0]));
+  }
+  const { calibration } = calibrating;
+  assert.equal(calibrating.control, "steering");
+  const braking = device([0, 1, 0]);
+  assert.equal(travelOf(calibration, "gas", braking), 0);
+  assert.equal(travelOf(calibration, "brake", braking), 1);
+});
+
 test("without pedals the device cannot drive", () => {
   const calibrating = new Calibrating(device());
   CONTROLS.forEach(() => calibrating.skip());

@@ -202,13 +202,21 @@ function mostMoved(rest, device, taken) {
     ...rest.axes.map((at, index) => mapped("axis", index, at, device)),
     ...rest.buttons.map(({ value }, index) => mapped("button", index, value, device)),
   ];
-  const free = all.filter(
-    (one) => !taken.some(({ kind, index }) => kind === one.kind && index === one.index),
-  );
+  const free = all.filter((one) => !taken.some((other) => isSame(one, other)));
   /** @param {Mapped} one */
   const moved = (one) => Math.abs(one.full - one.rest);
   const most = free.sort((one, other) => moved(other) - moved(one))[0];
   return most !== undefined && moved(most) >= MEANT ? most : null;
+}
+
+/**
+ * Tell whether two controls are one; an axis can be two, such as gas one way and brake the other.
+ * @param {Mapped} one
+ * @param {Mapped} other
+ */
+function isSame(one, other) {
+  const ways = Math.sign(one.full - one.rest) * Math.sign(other.full - other.rest);
+  return one.kind === other.kind && one.index === other.index && ways >= 0;
 }
 
 /**
