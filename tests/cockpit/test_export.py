@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -67,7 +68,7 @@ def page(tmp_path: Path) -> Path:
 
 def test_it_runs_from_a_disk(page: Path, tmp_path: Path) -> None:
     file = tmp_path / "cockpit.html"
-    file.write_text(exported_page(as_json({"text": TEXT}), page), encoding="utf-8")
+    file.write_text(exported_page(as_json({"text": TEXT}), b"", page), encoding="utf-8")
     with chrome(tmp_path / "profile") as window:
         window.get(file.as_uri())
         wait(window, "document.title !== 'waiting'")
@@ -130,25 +131,35 @@ def test_what_cannot_be_put_together_is_refused(tmp_path: Path, text: str) -> No
 
 
 def test_the_policy_comes_before_what_it_is_for(page: Path) -> None:
-    text = exported_page(b"{}", page)
+    text = exported_page(b"{}", b"", page)
     assert text.index("Content-Security-Policy") < min(map(text.index, ("<style", "<script")))
     assert "unsafe-inline" not in text
     assert not re.search(r'(?:href|src)="(?!data:)', text)
 
 
+def test_the_licences_of_all_that_is_inside_are_inside() -> None:
+    text = unescape(exported_page(b"{}", b"Permission of <zig>"))
+    assert "<pre>Permission of <zig>" in text
+    names = [path.name for path in (PAGE / "vendor").glob("*.js")]
+    assert len(names) == 3
+    for name in names:
+        licence = (PAGE / "vendor" / name).with_suffix(".LICENSE.txt").read_text(encoding="utf-8")
+        assert licence in text
+
+
 def test_the_same_page_gives_the_same_bytes(page: Path) -> None:
-    assert exported_page(b"{}", page) == exported_page(b"{}", page)
+    assert exported_page(b"{}", b"", page) == exported_page(b"{}", b"", page)
 
 
 def test_what_is_embedded_ends_no_element(page: Path) -> None:
-    text = exported_page(as_json({"text": TEXT}), page)
+    text = exported_page(as_json({"text": TEXT}), b"", page)
     data, script = re.findall(r"<script[^>]*>(.*?)</script>", text, re.DOTALL)
     assert json.loads(data) == {"text": TEXT}
     assert "from \\x3C/script>" in script
 
 
 def test_a_place_that_cannot_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pldf.cockpit.export.exported_page", lambda _bundle: "page")
+    monkeypatch.setattr("pldf.cockpit.export.exported_page", lambda *_: "page")
     with pytest.raises(ModelError, match=r"cannot be written .*--export"):
         write_export(tmp_path / "none" / "cockpit.html", b"{}")
     write_export(tmp_path / "cockpit.html", b"{}")

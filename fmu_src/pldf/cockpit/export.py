@@ -6,6 +6,7 @@ import base64
 import hashlib
 import json
 import re
+from html import escape
 from pathlib import Path
 from typing import Final
 
@@ -13,9 +14,11 @@ from ..errors import ModelError
 from ..files.disk import replace_file
 from .one_script import one_script
 from .server import PAGE
+from .wasm_models import licences_of_models
 
 MAIN: Final = "main.js"
 WORKER: Final = "engine/worker.js"
+_LICENCE: Final = ".LICENSE.txt"
 _STYLE: Final = re.compile(r'<link rel="stylesheet" href="([^"]+)"\s*/?>\n?')
 _CHARSET: Final = '<meta charset="utf-8">'  # what follows it obeys the policy
 _ICON: Final = re.compile(r'(?<=<link rel="icon" href=")([^"]+)(?=">)')
@@ -29,18 +32,19 @@ def write_export(path: Path, bundle: bytes) -> None:
         ModelError: the file cannot be written.
     """
     try:
-        replace_file(path, exported_page(bundle).encode())
+        replace_file(path, exported_page(bundle, licences_of_models()).encode())
     except OSError as problem:
         raise ModelError(
             f"{path}: cannot be written ({problem.strerror}); choose another place with --export"
         ) from None
 
 
-def exported_page(bundle: bytes, page: Path = PAGE) -> str:
+def exported_page(bundle: bytes, licences: bytes = b"", page: Path = PAGE) -> str:
     """Return the page as one HTML text.
 
     Args:
         bundle: the bundle as JSON without ``<``.
+        licences: of what is in the FMUs.
         page: folder of the page.
     """
     text = (page / "index.html").read_text(encoding="utf-8")
@@ -53,6 +57,9 @@ def exported_page(bundle: bytes, page: Path = PAGE) -> str:
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n<style>{style}</style>\n'
     )
     data = f'<script type="application/json" id="bundle">{bundle.decode()}</script>'
+    texts = [licences, *(file.read_bytes() for file in sorted(page.glob(f"vendor/*{_LICENCE}")))]
+    shown = "\n".join(escape(text.decode()) for text in texts)
+    data += f'\n<template id="licences"><pre>{shown}</pre></template>'
     text = _STYLE.sub("", text).replace(_CHARSET, f"{_CHARSET}\n{head}", 1)
     text = _ICON.sub(lambda m: _as_address((page / m[1]).read_bytes(), "image/svg+xml"), text)
     return _SCRIPT.sub(lambda _: f'{data}\n<script type="module">{script}</script>', text)

@@ -59,6 +59,20 @@ def wasm_models(announce: Callable[[str], None] = lambda _: None) -> dict[str, W
     return made
 
 
+def licences_of_models() -> bytes:
+    """Return the licences of what is in the FMUs, as a text.
+
+    Raises:
+        ValueError: they were compiled without the compiler that is missing now.
+    """
+    packed = PACKED / "LICENSES.txt"
+    if packed.exists():
+        return packed.read_bytes()
+    from ..build.native.wasm import licences  # what they were compiled with
+
+    return licences()
+
+
 def place_of_models() -> Path | None:
     """Return the folder with the four FMUs; None: they are yet to be compiled."""
     return next((folder for folder in (PACKED, _cached()) if _read(folder)), None)

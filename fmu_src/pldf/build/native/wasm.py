@@ -66,11 +66,12 @@ def build_wasm(recipe: NativeRecipe, out: Path, announce: Announce) -> list[Path
     paths = [out / f"{model.name}{suffix}" for suffix in (".wasm", ".xml")]
     for path, content in zip(paths, (data, with_guid(described, guid)[DESCRIPTION]), strict=True):
         replace_file(path, content)
-    replace_file(out / LICENCES, _licences())
+    replace_file(out / LICENCES, licences())
     return paths
 
 
-def _licences() -> bytes:
+def licences() -> bytes:
+    """Return the licences of what is in a module, one after the other."""
     texts = {"adaptive-pldf": license_of("adaptive-pldf")}
     texts |= {name: (zig_folder() / place).read_bytes() for name, place in _LINKED.items()}
     parts = [f"# {name}\n\n".encode() + text.strip() + b"\n" for name, text in texts.items()]
