@@ -15,7 +15,11 @@ test("the check sum is that of zlib", () => {
 });
 
 test("a prepared road is read with its marks", () => {
-  const marks = ["mark 0 road 12 Hauptstraße", "mark 1230500 road_against 7", "mark 5000 sign 50 km/h"];
+  const marks = [
+    "mark 0 road 12 Hauptstraße",
+    "mark 1230500 road_against 7",
+    "mark 5000 sign 50 km/h",
+  ];
   const read = readPrepared(preparedRoad(20, { marks, limit_mps: (s) => 10 + s }));
   assert.equal(read.key, "0123456789abcdef");
   assert.deepEqual(read.marks[0], { s_m: 0, kind: "road", name: "12 Hauptstraße" });
@@ -38,7 +42,8 @@ test("what is no prepared road, or a damaged one, is refused with a reason", () 
     [changed, /damaged/],
     [summed([...script]), /a prepared script/],
   ]);
-  for (const [bytes, reason] of cases) assert.throws(() => readPrepared(bytes), { message: reason });
+  for (const [bytes, reason] of cases)
+    assert.throws(() => readPrepared(bytes), { message: reason });
 });
 
 test("the model follows its line, and heights are the sum of grades", () => {
@@ -85,14 +90,25 @@ test("a heading may turn round and round without a jump", () => {
 });
 
 test("without a line the bends' sides come from stretches, else they take turns", () => {
-  const made = { curvature_per_m: (/** @type {number} */ s) => (s % 100 > 50 && s % 100 < 90 ? 0.01 : 0) };
+  const made = {
+    curvature_per_m: (/** @type {number} */ s) => (s % 100 > 50 && s % 100 < 90 ? 0.01 : 0),
+  };
   const turns = roadModel(300, made);
-  assert.deepEqual([70, 170, 270].map((s) => Math.sign(turns.curvatureAt(s))), [1, -1, 1]);
+  assert.deepEqual(
+    [70, 170, 270].map((s) => Math.sign(turns.curvatureAt(s))),
+    [1, -1, 1],
+  );
   const bend = (/** @type {number} */ from_m) => ({
-    kind: /** @type {const} */ ("bend_right"), from_m, to_m: from_m + 45, name: "",
+    kind: /** @type {const} */ ("bend_right"),
+    from_m,
+    to_m: from_m + 45,
+    name: "",
   });
   const told = roadModel(300, made, { stretches: [bend(48), bend(148), bend(248)] });
-  assert.deepEqual([70, 170, 270].map((s) => Math.sign(told.curvatureAt(s))), [-1, -1, -1]);
+  assert.deepEqual(
+    [70, 170, 270].map((s) => Math.sign(told.curvatureAt(s))),
+    [-1, -1, -1],
+  );
 });
 
 test("the driven lane is the outer one on the side of the traffic", () => {
@@ -102,9 +118,18 @@ test("the driven lane is the outer one on the side of the traffic", () => {
 });
 
 test("limits are spans, and slow ones are villages where the road names none", () => {
-  const made = { limit_mps: (/** @type {number} */ s) => (s >= 100 && s < 400 ? 50 / 3.6 : 100 / 3.6) };
+  const made = {
+    limit_mps: (/** @type {number} */ s) => (s >= 100 && s < 400 ? 50 / 3.6 : 100 / 3.6),
+  };
   const road = roadModel(600, made);
-  assert.deepEqual(road.limits.map((span) => [span.from_m, span.to_m]), [[0, 100], [100, 400], [400, 600]]);
+  assert.deepEqual(
+    road.limits.map((span) => [span.from_m, span.to_m]),
+    [
+      [0, 100],
+      [100, 400],
+      [400, 600],
+    ],
+  );
   assert.equal(road.limitAt(399.9), 50 / 3.6);
   assert.equal(road.limitAt(400), 100 / 3.6);
   assert.deepEqual(road.stretchAt("village", 250)?.from_m, 100);

@@ -12,7 +12,13 @@ function near(value, wanted, tolerance = 1e-6) {
   assert.ok(Math.abs(value - wanted) <= tolerance, `${value} instead of ${wanted}`);
 }
 
-/** Where something far away is in the picture: -1 .. 1 to the right, and up. @param {PerspectiveCamera} camera @param {number} east @param {number} up @param {number} north */
+/**
+ * Where something far away is in the picture: -1 .. 1 to the right, and up.
+ * @param {PerspectiveCamera} camera
+ * @param {number} east
+ * @param {number} up
+ * @param {number} north
+ */
 function seen(camera, east, up, north) {
   camera.updateMatrixWorld();
   return new Vector3(east, up, -north).add(camera.position).project(camera);
@@ -27,7 +33,12 @@ function eastward(fov_deg, width, height) {
 }
 
 test("what lies at half the field of view is at the picture's edge, whatever its shape", () => {
-  for (const [fov_deg, width, height] of [[60, 1280, 720], [90, 1280, 720], [45, 800, 1200], [110, 3000, 600]]) {
+  for (const [fov_deg, width, height] of [
+    [60, 1280, 720],
+    [90, 1280, 720],
+    [45, 800, 1200],
+    [110, 3000, 600],
+  ]) {
     const half = Math.tan((fov_deg * Math.PI) / 360);
     near(seen(eastward(fov_deg, width, height), 1000, 0, -1000 * half).x, 1);
     near(seen(eastward(fov_deg, width, height), 1000, 0, 500 * half).x, -0.5);

@@ -12,14 +12,25 @@ const BRIDGE = { kind: /** @type {const} */ ("bridge"), from_m: 500, to_m: 700, 
 
 /** Up and down through bends. @param {Parameters<typeof roadModel>[2]} about */
 function hilly(about = {}) {
-  return roadModel(1500, {
-    x_m: (s) => s * 0.9,
-    y_m: (s) => 120 * Math.sin(s / 280),
-    grade: (s) => 0.06 * Math.sin(s / 130),
-  }, about);
+  return roadModel(
+    1500,
+    {
+      x_m: (s) => s * 0.9,
+      y_m: (s) => 120 * Math.sin(s / 280),
+      grade: (s) => 0.06 * Math.sin(s / 130),
+    },
+    about,
+  );
 }
 
-/** Height of the land as it is drawn. @param {Map<string, ReturnType<typeof tile>>} tiles @param {Ground} ground @param {number} x_m @param {number} y_m @param {boolean} fine */
+/**
+ * Height of the land as it is drawn.
+ * @param {Map<string, ReturnType<typeof tile>>} tiles
+ * @param {Ground} ground
+ * @param {number} x_m
+ * @param {number} y_m
+ * @param {boolean} fine
+ */
 function drawn(tiles, ground, x_m, y_m, fine) {
   const [i, j] = [x_m, y_m].map((at) => Math.floor(at / TILE_M));
   const key = `${i} ${j} ${fine}`;
@@ -61,10 +72,12 @@ test("the road goes on beyond its ends, unless it would meet itself", () => {
   const straight = new Ground(hilly());
   assert.deepEqual([straight.from_m, straight.to_m], [-300, 2800]);
   const radius = 1000 / (2 * Math.PI);
-  const circle = new Ground(roadModel(1000, {
-    x_m: (s) => radius * Math.sin(s / radius),
-    y_m: (s) => radius * (1 - Math.cos(s / radius)),
-  }));
+  const circle = new Ground(
+    roadModel(1000, {
+      x_m: (s) => radius * Math.sin(s / radius),
+      y_m: (s) => radius * (1 - Math.cos(s / radius)),
+    }),
+  );
   assert.deepEqual([circle.from_m, circle.to_m], [-0, 1000]);
 });
 
@@ -76,7 +89,9 @@ test("where the road comes by twice, the land lies below the lower one", () => {
     line.push([line[s][0] + Math.cos(heading(s)), line[s][1] + Math.sin(heading(s))]);
   }
   const road = roadModel(700, {
-    x_m: (s) => line[s][0], y_m: (s) => line[s][1], grade: (s) => (s > 200 && s < 300 ? 0.06 : 0),
+    x_m: (s) => line[s][0],
+    y_m: (s) => line[s][1],
+    grade: (s) => (s > 200 && s < 300 ? 0.06 : 0),
   });
   const above = road.at(485.6);
   const ground = new Ground(road);

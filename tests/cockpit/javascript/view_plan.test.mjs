@@ -20,9 +20,15 @@ test("a sign stands where a limit begins, with its number", () => {
   const limit_mps = (/** @type {number} */ s) => [100, 80, 50, 80][Math.floor(s / 250)] * KMH;
   const { signs } = furnitureOf(roadModel(999, { limit_mps }));
   const limits = signs.filter((sign) => sign.kind === "limit");
-  assert.deepEqual(limits.map((sign) => [sign.s_m, sign.text]), [
-    [25, "100"], [250, "80"], [500, "50"], [750, "80"],
-  ]);
+  assert.deepEqual(
+    limits.map((sign) => [sign.s_m, sign.text]),
+    [
+      [25, "100"],
+      [250, "80"],
+      [500, "50"],
+      [750, "80"],
+    ],
+  );
 });
 
 test("a limit of 30 mph is shown as that, one of 50 km/h as 50", () => {
@@ -33,10 +39,18 @@ test("a limit of 30 mph is shown as that, one of 50 km/h as 50", () => {
 });
 
 test("a village has its sign at both ends", () => {
-  const stretches = [{ kind: /** @type {const} */ ("village"), from_m: 100, to_m: 300, name: "Au" }];
+  const stretches = [
+    { kind: /** @type {const} */ ("village"), from_m: 100, to_m: 300, name: "Au" },
+  ];
   const { signs, posts } = furnitureOf(roadModel(500, {}, { stretches }));
   const town = signs.filter((sign) => sign.kind.startsWith("town"));
-  assert.deepEqual(town.map((sign) => [sign.kind, sign.s_m, sign.text]), [["town", 100, "Au"], ["town_end", 300, "Au"]]);
+  assert.deepEqual(
+    town.map((sign) => [sign.kind, sign.s_m, sign.text]),
+    [
+      ["town", 100, "Au"],
+      ["town_end", 300, "Au"],
+    ],
+  );
   assert.ok(posts.every((s_m) => s_m < 100 || s_m >= 300) && posts.length > 3);
 });
 
@@ -44,7 +58,9 @@ test("boards stand on the outside of curves that are sharp for their limit, and 
   const { boards, curves, signs, rails } = furnitureOf(curvy(120, 80));
   assert.equal(curves.length, 1);
   assert.ok(curves[0].sharp && curves[0].left);
-  assert.ok(boards.length >= 3 && boards.every((b) => !b.left && b.to_left && b.s_m > 290 && b.s_m < 410));
+  assert.ok(
+    boards.length >= 3 && boards.every((b) => !b.left && b.to_left && b.s_m > 290 && b.s_m < 410),
+  );
   const warning = signs.find((sign) => sign.kind === "curve_left");
   assert.ok(warning && warning.s_m > 150 && warning.s_m < 200);
   assert.ok(rails.every((rail) => !rail.left));
@@ -54,12 +70,21 @@ test("boards stand on the outside of curves that are sharp for their limit, and 
 test("the cross-section has a line between any two lanes", () => {
   const kinds = (/** @type {Parameters<typeof roadModel>[2]} */ about) =>
     crossSection(roadModel(10, {}, about)).lines.map((line) => [line.at_m, line.kind]);
-  assert.deepEqual(kinds({}), [[3.5, "edge"], [-3.5, "edge"], [0, "middle"]]);
+  assert.deepEqual(kinds({}), [
+    [3.5, "edge"],
+    [-3.5, "edge"],
+    [0, "middle"],
+  ]);
   assert.deepEqual(kinds({ lanes_right: 2, lanes_left: 1 }), [
-    [3.5, "edge"], [-7, "edge"], [0, "middle"], [-3.5, "lane"],
+    [3.5, "edge"],
+    [-7, "edge"],
+    [0, "middle"],
+    [-3.5, "lane"],
   ]);
   assert.deepEqual(kinds({ lanes_right: 2, lanes_left: 0, traffic: "LHT" }), [
-    [7, "edge"], [-0, "edge"], [3.5, "lane"],
+    [7, "edge"],
+    [-0, "edge"],
+    [3.5, "lane"],
   ]);
 });
 
@@ -115,17 +140,26 @@ test("with a graphics card the picture is to be smooth, and the pixels do not go
 });
 
 test("a warning stands behind the curve before its own, or not at all", () => {
-  const bent = (/** @type {number} */ s) => 
+  const bent = (/** @type {number} */ s) =>
     [300, 420, 490].some((from) => s >= from && s < from + 50) ? 0.01 : 0;
-  const { signs } = furnitureOf(roadModel(800, { curvature_per_m: bent, limit_mps: () => 22 }, {
-    stretches: [
-      { kind: "bend_left", from_m: 290, to_m: 360, name: "" },
-      { kind: "bend_right", from_m: 410, to_m: 480, name: "" },
-      { kind: "bend_left", from_m: 485, to_m: 550, name: "" },
-    ],
-  }));
+  const { signs } = furnitureOf(
+    roadModel(
+      800,
+      { curvature_per_m: bent, limit_mps: () => 22 },
+      {
+        stretches: [
+          { kind: "bend_left", from_m: 290, to_m: 360, name: "" },
+          { kind: "bend_right", from_m: 410, to_m: 480, name: "" },
+          { kind: "bend_left", from_m: 485, to_m: 550, name: "" },
+        ],
+      },
+    ),
+  );
   const warnings = signs.filter((sign) => sign.kind.startsWith("curve"));
-  assert.deepEqual(warnings.map((sign) => sign.kind), ["curve_left", "curve_right"]);
+  assert.deepEqual(
+    warnings.map((sign) => sign.kind),
+    ["curve_left", "curve_right"],
+  );
   assert.ok(warnings[1].s_m > 350 && warnings[1].s_m < 360);
 });
 

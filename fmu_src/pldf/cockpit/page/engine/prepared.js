@@ -76,7 +76,12 @@ function checkSum(bytes, body) {
   if (told !== `crc32 ${sum}\n`) throw new RoadFileError("the file is damaged (check sum)");
 }
 
-/** @param {Uint8Array} bytes @param {number} start @param {number} rows @returns {Float64Array[]} */
+/**
+ * @param {Uint8Array} bytes
+ * @param {number} start
+ * @param {number} rows
+ * @returns {Float64Array[]}
+ */
 function columns(bytes, start, rows) {
   const view = new DataView(bytes.buffer, bytes.byteOffset + start);
   return Array.from({ length: COLUMNS }, (_, column) =>

@@ -3,7 +3,9 @@ import { readPrepared } from "./prepared.js";
 
 /** @typedef {import("../types.js").Road} Road */
 /** @typedef {import("../types.js").Stretch} Stretch */
-/** @typedef {{x_m: number, y_m: number, z_m: number, heading_rad: number, pitch_rad: number}} Pose */
+/**
+ * @typedef {{x_m: number, y_m: number, z_m: number, heading_rad: number, pitch_rad: number}} Pose
+ */
 /** @typedef {{from_m: number, to_m: number, limit_mps: number}} LimitSpan */
 
 // A line from a file bends at its knots; a driver's view must not jump there.

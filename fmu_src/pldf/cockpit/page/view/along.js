@@ -4,13 +4,21 @@ import { KERB_M, PARAPET_M, beyondEdge } from "./profile.js";
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
 /** @typedef {import("./mesh.js").MeshBuilder} MeshBuilder */
 /** @typedef {import("./profile.js").CrossSection} CrossSection */
-/** @typedef {{road: RoadModel, section: CrossSection, solid: MeshBuilder, detail: import("./plants.js").Detail}} Site */
+/**
+ * @typedef {{road: RoadModel, section: CrossSection, solid: MeshBuilder, detail: import("./plants.js").Detail}} Site
+ */
 
 const WHITE = 0xf2f2ee;
 const STEEL = 0xaab0b4;
 const CONCRETE = 0xb9b6ae;
 
-/** Stand at a place beside the road. @param {Site} site @param {number} s_m @param {number} left_m @param {number} up_m */
+/**
+ * Stand at a place beside the road.
+ * @param {Site} site
+ * @param {number} s_m
+ * @param {number} left_m
+ * @param {number} up_m
+ */
 export function standAt({ road, solid }, s_m, left_m, up_m = 0) {
   const at = road.at(s_m, left_m);
   return solid.stand({ ...at, z_m: at.z_m + up_m });
@@ -29,14 +37,25 @@ export function reflectorPosts(site, s_m) {
     solid.box([-0.06, -0.07, 0.98], [0.06, 0.07, 1.08], WHITE);
     const amber = left === site.road.side > 0 ? 0xf4f4f4 : 0xffa526;
     solid.face(
-      [[-0.065, 0.035, 0.82], [-0.065, 0.035, 0.95], [-0.065, -0.035, 0.95], [-0.065, -0.035, 0.82]],
+      [
+        [-0.065, 0.035, 0.82],
+        [-0.065, 0.035, 0.95],
+        [-0.065, -0.035, 0.95],
+        [-0.065, -0.035, 0.82],
+      ],
       amber,
       2,
     );
   }
 }
 
-/** A steel rail on posts. @param {Site} site @param {number} from_m @param {number} to_m @param {boolean} left */
+/**
+ * A steel rail on posts.
+ * @param {Site} site
+ * @param {number} from_m
+ * @param {number} to_m
+ * @param {boolean} left
+ */
 export function guardRail(site, from_m, to_m, left) {
   const at_m = beyondEdge(site.section, left, 1.1);
   for (let s_m = from_m; s_m < to_m; s_m += 4) {
@@ -44,11 +63,17 @@ export function guardRail(site, from_m, to_m, left) {
     band(site, s_m, next, at_m, [0.42, 0.74], STEEL, site.detail ? 1 : 1.12);
     if (!site.detail) continue;
     standAt(site, s_m, at_m, -0.2).box([-0.05, -0.06, 0], [0.05, 0.06, 0.85], STEEL);
-    if (site.detail === 2) band(site, s_m, next, at_m + (left ? -0.02 : 0.02), [0.58, 0.74], STEEL, 1.25);
+    if (site.detail === 2)
+      band(site, s_m, next, at_m + (left ? -0.02 : 0.02), [0.58, 0.74], STEEL, 1.25);
   }
 }
 
-/** Parapet with a hand rail, on both sides of a bridge, and the deck's side. @param {Site} site @param {number} from_m @param {number} to_m */
+/**
+ * Parapet with a hand rail, on both sides of a bridge, and the deck's side.
+ * @param {Site} site
+ * @param {number} from_m
+ * @param {number} to_m
+ */
 export function railing(site, from_m, to_m) {
   for (const left of [true, false]) {
     const at_m = beyondEdge(site.section, left, 1.3);
@@ -56,13 +81,23 @@ export function railing(site, from_m, to_m) {
     for (let s_m = from_m; s_m < to_m; s_m += step_m) {
       const next = Math.min(s_m + step_m, to_m);
       standAt(site, s_m, at_m, KERB_M).box([-0.04, -0.04, 0], [0.04, 0.04, PARAPET_M], 0x5d7f8c);
-      for (const up of site.detail ? [0.35, 0.65, 0.95] : [0.95]) band(site, s_m, next, at_m, [up, up + 0.07], 0x6f93a0, 1);
+      for (const up of site.detail ? [0.35, 0.65, 0.95] : [0.95])
+        band(site, s_m, next, at_m, [up, up + 0.07], 0x6f93a0, 1);
     }
     band(site, from_m, to_m, at_m + (left ? 0.2 : -0.2), [-1.4, KERB_M + 0.12], CONCRETE, 1);
   }
 }
 
-/** An upright band, seen from both sides. @param {Site} site @param {number} from_m @param {number} to_m @param {number} left_m @param {number[]} ups @param {number} hex @param {number} shade */
+/**
+ * An upright band, seen from both sides.
+ * @param {Site} site
+ * @param {number} from_m
+ * @param {number} to_m
+ * @param {number} left_m
+ * @param {number[]} ups
+ * @param {number} hex
+ * @param {number} shade
+ */
 function band({ road, solid }, from_m, to_m, left_m, [low, high], hex, shade) {
   const [a, b] = [road.at(from_m, left_m), road.at(to_m, left_m)];
   solid.stand({ x_m: 0, y_m: 0, z_m: 0, heading_rad: 0 });

@@ -21,7 +21,8 @@ export class Braking {
   ahead(s_m, speed_mps, lead_mps) {
     const passed_m = s_m - this.s_m;
     this.s_m = s_m;
-    if (!(passed_m >= 0 && passed_m < 10)) this.before = null; // another drive
+    if (!(passed_m >= 0 && passed_m < 10))
+      this.before = null; // another drive
     else if (speed_mps > 0) this.time_s += passed_m / speed_mps;
     const { before } = this;
     if (before && s_m - before.s_m < SINCE_M) return this.lit;

@@ -43,9 +43,22 @@ function built(build) {
 
 /** @param {MeshBuilder} solid */
 function brakeLights(solid) {
-  for (const [low, high, up] of [[-0.84, -0.48, 0.66], [0.48, 0.84, 0.66], [-0.2, 0.2, 1.3]]) {
+  for (const [low, high, up] of [
+    [-0.84, -0.48, 0.66],
+    [0.48, 0.84, 0.66],
+    [-0.2, 0.2, 1.3],
+  ]) {
     const behind = up > 1 ? -3.75 : -4.45;
-    solid.face([[behind, high, up], [behind, low, up], [behind, low, up + (up > 1 ? 0.05 : 0.22)], [behind, high, up + (up > 1 ? 0.05 : 0.22)]], 0xff2a1c, 1.5);
+    solid.face(
+      [
+        [behind, high, up],
+        [behind, low, up],
+        [behind, low, up + (up > 1 ? 0.05 : 0.22)],
+        [behind, high, up + (up > 1 ? 0.05 : 0.22)],
+      ],
+      0xff2a1c,
+      1.5,
+    );
   }
 }
 
@@ -62,15 +75,35 @@ function car(solid, hex) {
 
 /** On the road below, in two steps. @param {MeshBuilder} solid */
 function shadow(solid) {
-  for (const [out, up, hex] of [[0.05, 0.03, 0x4a4b4e], [-0.12, 0.04, 0x2c2d2f]]) {
+  for (const [out, up, hex] of [
+    [0.05, 0.03, 0x4a4b4e],
+    [-0.12, 0.04, 0x2c2d2f],
+  ]) {
     const [front, rear, half] = [0.02 + out, -CAR_LENGTH_M - out, HALF_M + out];
-    solid.face([[rear, -half, up], [front, -half, up], [front, half, up], [rear, half, up]], hex, 0.9);
+    solid.face(
+      [
+        [rear, -half, up],
+        [front, -half, up],
+        [front, half, up],
+        [rear, half, up],
+      ],
+      hex,
+      0.9,
+    );
   }
 }
 
 /** @param {MeshBuilder} solid @param {number} hex */
 function body(solid, hex) {
-  const ring = [[-4.4, 0.24], [0, 0.22], [0, 0.62], [-0.25, 0.78], [-1.35, 0.93], [-4.1, 0.98], [-4.4, 0.9]];
+  const ring = [
+    [-4.4, 0.24],
+    [0, 0.22],
+    [0, 0.62],
+    [-0.25, 0.78],
+    [-1.35, 0.93],
+    [-4.1, 0.98],
+    [-4.4, 0.9],
+  ];
   shell(solid, ring, HALF_M, HALF_M * 0.94, hex);
   solid.box([-3.95, -HALF_M - 0.01, 0.22], [-0.4, HALF_M + 0.01, 0.4], TRIM);
 }
@@ -80,7 +113,12 @@ function cabin(solid, hex) {
   const half = HALF_M * 0.9;
   const top = HALF_M * 0.7;
   /** @type {Point[]} front below, front above, back above, back below; right side */
-  const right = [[-1.3, -half, 0.92], [-2, -top, 1.44], [-3.5, -top, 1.46], [-4.25, -half, 0.96]];
+  const right = [
+    [-1.3, -half, 0.92],
+    [-2, -top, 1.44],
+    [-3.5, -top, 1.46],
+    [-4.25, -half, 0.96],
+  ];
   const left = right.map(([a, l, u]) => /** @type {Point} */ ([a, -l, u]));
   solid.face([right[0], left[0], left[1], right[1]], GLASS, 1.2);
   solid.face([left[3], right[3], right[2], left[2]], GLASS, 1.2);
@@ -89,7 +127,14 @@ function cabin(solid, hex) {
   solid.face([right[1], left[1], left[2], right[2]], hex, 1.05);
 }
 
-/** Upright outline, the same on both sides, narrower above. @param {MeshBuilder} solid @param {number[][]} ring @param {number} low_half @param {number} high_half @param {number} hex */
+/**
+ * Upright outline, the same on both sides, narrower above.
+ * @param {MeshBuilder} solid
+ * @param {number[][]} ring
+ * @param {number} low_half
+ * @param {number} high_half
+ * @param {number} hex
+ */
 function shell(solid, ring, low_half, high_half, hex) {
   const half = (/** @type {number} */ up) => low_half + ((high_half - low_half) * (up - 0.3)) / 0.7;
   const right = ring.map(([a, u]) => /** @type {Point} */ ([a, -half(u), u]));
@@ -117,11 +162,22 @@ function wheel(solid, ahead, side) {
   const radius = 0.32;
   const out = side * (HALF_M + 0.02);
   const at = (/** @type {number} */ turn, /** @type {number} */ left) =>
-    /** @type {Point} */ ([ahead + radius * Math.cos(turn), left, radius + radius * Math.sin(turn)]);
+    /** @type {Point} */ ([
+      ahead + radius * Math.cos(turn),
+      left,
+      radius + radius * Math.sin(turn),
+    ]);
   const turns = Array.from({ length: 12 }, (_, k) => (2 * Math.PI * k) / 12);
   const rim = turns.map((turn) => at(turn, out));
   solid.face(side < 0 ? rim : [...rim].reverse(), TYRE, 1.3);
-  const hub = turns.map((turn) => /** @type {Point} */ ([ahead + 0.2 * Math.cos(turn), out + 0.005 * side, radius + 0.2 * Math.sin(turn)]));
+  const hub = turns.map(
+    (turn) =>
+      /** @type {Point} */ ([
+        ahead + 0.2 * Math.cos(turn),
+        out + 0.005 * side,
+        radius + 0.2 * Math.sin(turn),
+      ]),
+  );
   solid.face(side < 0 ? hub : [...hub].reverse(), 0xa9adb0);
   for (let k = 0; k < 12; k++) {
     const [a, b] = [turns[k], turns[(k + 1) % 12]];

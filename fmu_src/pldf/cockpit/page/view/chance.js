@@ -16,7 +16,12 @@ export function between(low, high, share) {
   return low + (high - low) * share;
 }
 
-/** 0 below `low`, 1 above `high`, smooth between. @param {number} low @param {number} high @param {number} value */
+/**
+ * 0 below `low`, 1 above `high`, smooth between.
+ * @param {number} low
+ * @param {number} high
+ * @param {number} value
+ */
 export function rising(low, high, value) {
   const t = Math.min(Math.max((value - low) / (high - low), 0), 1);
   return t * t * (3 - 2 * t);

@@ -56,7 +56,8 @@ export function look(camera, road, sight, name, still) {
   const body = still ? STILL : movements(road, sight);
   const up = name === "chase" ? CHASE_UP_M : EYE_UP_M + body.up_m;
   camera.rotation.order = "YXZ";
-  const heading = name === "chase" ? chaseHeading(road, sight, at) : at.heading_rad + sight.heading_rad;
+  const heading =
+    name === "chase" ? chaseHeading(road, sight, at) : at.heading_rad + sight.heading_rad;
   const pitch = at.pitch_rad + (name === "chase" ? -CHASE_DOWN_RAD : body.pitch_rad);
   camera.rotation.set(pitch, heading - Math.PI / 2, name === "chase" ? 0 : body.roll_rad);
   camera.position.set(0, at.z_m + up, 0);
@@ -69,7 +70,8 @@ const STILL = { up_m: 0, pitch_rad: 0, roll_rad: 0 };
 /** @param {RoadModel} road @param {Sight} sight */
 function movements(road, { s_m, speed_mps, acceleration_mps2 = 0 }) {
   const lateral_mps2 = road.curvatureAt(s_m) * speed_mps ** 2;
-  const rough = Math.sin(s_m * 1.9) * 0.5 + Math.sin(s_m * 0.83 + 1) * 0.35 + Math.sin(s_m * 4.3) * 0.15;
+  const rough =
+    Math.sin(s_m * 1.9) * 0.5 + Math.sin(s_m * 0.83 + 1) * 0.35 + Math.sin(s_m * 4.3) * 0.15;
   return {
     up_m: SHAKE_M * rough * Math.min(speed_mps / 25, 1.2),
     pitch_rad: DIVE_RAD_PER_MPS2 * Math.max(Math.min(acceleration_mps2, 4), -8),
@@ -77,7 +79,12 @@ function movements(road, { s_m, speed_mps, acceleration_mps2 = 0 }) {
   };
 }
 
-/** From behind one looks at where the car is. @param {RoadModel} road @param {Sight} sight @param {{x_m: number, y_m: number}} eye */
+/**
+ * From behind one looks at where the car is.
+ * @param {RoadModel} road
+ * @param {Sight} sight
+ * @param {{x_m: number, y_m: number}} eye
+ */
 function chaseHeading(road, sight, eye) {
   const car = road.at(sight.s_m + 3, road.lane_m + sight.lateral_m);
   return Math.atan2(car.y_m - eye.y_m, car.x_m - eye.x_m);

@@ -3,9 +3,13 @@ import { hills, rising } from "./chance.js";
 import { BEYOND_M } from "./profile.js";
 
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
-/** @typedef {{s_m: number, x_m: number, y_m: number, z_m: number, bridge: boolean}} Sample a place on the road */
+/**
+ * @typedef {{s_m: number, x_m: number, y_m: number, z_m: number, bridge: boolean}} Sample a place on the road
+ */
 /** @typedef {{distance_m: number, z_m: number, bridge: boolean}} Nearest */
-/** @typedef {{x_m: number, y_m: number, cos: number, sin: number, half_m: number, z_m: number}} Valley */
+/**
+ * @typedef {{x_m: number, y_m: number, cos: number, sin: number, half_m: number, z_m: number}} Valley
+ */
 
 /** the land beside the road lies so much lower than the road; the verge reaches down to it */
 export const BELOW_ROAD_M = 0.7;
@@ -26,7 +30,10 @@ export class Ground {
     /** @type {Map<string, Sample[]>} places on the road by cell of the land */
     this.cells = new Map();
     for (let s_m = 0; s_m <= road.length_m; s_m += SAMPLE_M) this.#remember(s_m);
-    const [before_m, behind_m] = [this.#free(0, -1, BEYOND_M.before), this.#free(road.length_m, 1, BEYOND_M.behind)];
+    const [before_m, behind_m] = [
+      this.#free(0, -1, BEYOND_M.before),
+      this.#free(road.length_m, 1, BEYOND_M.behind),
+    ];
     /** from where to where there is a road to be seen */
     this.from_m = -before_m;
     this.to_m = road.length_m + behind_m;
@@ -41,7 +48,12 @@ export class Ground {
     });
   }
 
-  /** How far a road can go on beyond an end before it meets itself. @param {number} end_m @param {1 | -1} way @param {number} most_m */
+  /**
+   * How far a road can go on beyond an end before it meets itself.
+   * @param {number} end_m
+   * @param {1 | -1} way
+   * @param {number} most_m
+   */
   #free(end_m, way, most_m) {
     for (let far_m = APART_M; far_m < most_m; far_m += SAMPLE_M) {
       const { x_m, y_m } = this.road.at(end_m + way * far_m);
@@ -107,7 +119,12 @@ export class Ground {
     return { z_m: z_m - this.#valley(x, y, road), distance_m: road.distance_m };
   }
 
-  /** How much a valley lowers the land. @param {number} x @param {number} y @param {Nearest} road */
+  /**
+   * How much a valley lowers the land.
+   * @param {number} x
+   * @param {number} y
+   * @param {Nearest} road
+   */
   #valley(x, y, road) {
     let depth = 0;
     for (const valley of this.valleys) {
@@ -139,7 +156,12 @@ function nearest(x, y, near) {
   return { distance_m: Math.sqrt(best), z_m: lowest, bridge: at.bridge };
 }
 
-/** Height of the road, near pieces first. @param {number} x @param {number} y @param {Sample[]} far */
+/**
+ * Height of the road, near pieces first.
+ * @param {number} x
+ * @param {number} y
+ * @param {Sample[]} far
+ */
 function mean(x, y, far) {
   let [sum, weights] = [0, 0];
   for (const each of far) {

@@ -1,7 +1,9 @@
 // Houses and a church of a village.
 import { between, chance } from "./chance.js";
 
-/** @typedef {import("./mesh.js").MeshBuilder} MeshBuilder the frame: front of the house, facing the road along its left */
+/**
+ * @typedef {import("./mesh.js").MeshBuilder} MeshBuilder the frame: front of the house, facing the road along its left
+ */
 /** @typedef {import("./mesh.js").Point} Point */
 
 const WALLS = [0xf3ead8, 0xe8dcc0, 0xf6f3ea, 0xe9d3b4, 0xd9c7b0, 0xf0e0d0, 0xcfd8d4];
@@ -28,32 +30,121 @@ export function house(solid, seed, away) {
   else gableAside(solid, length, near, far, wall, roof, walls);
   windows(solid, length, floors, away, seed);
   sideWindows(solid, near, far, length, floors);
-  solid.box([length * 0.25, depth * 0.4 * away - 0.3, wall + 1], [length * 0.25 + 0.6, depth * 0.4 * away + 0.3, wall + 4.4], 0x8a5a48);
+  solid.box(
+    [length * 0.25, depth * 0.4 * away - 0.3, wall + 1],
+    [length * 0.25 + 0.6, depth * 0.4 * away + 0.3, wall + 4.4],
+    0x8a5a48,
+  );
 }
 
-/** Ridge along the road. @param {MeshBuilder} solid @param {number} length @param {number} near @param {number} far @param {number} wall @param {number} roof @param {number} walls */
+/**
+ * Ridge along the road.
+ * @param {MeshBuilder} solid
+ * @param {number} length
+ * @param {number} near
+ * @param {number} far
+ * @param {number} wall
+ * @param {number} roof
+ * @param {number} walls
+ */
 function gableAside(solid, length, near, far, wall, roof, walls) {
   const [eave, rise, middle] = [0.5, (far - near) * 0.42, (near + far) / 2];
   const drop = (eave * rise) / ((far - near) / 2);
   const [a0, a1] = [-0.4, length + 0.4];
-  solid.face([[a1, near - eave, wall - drop], [a1, middle, wall + rise], [a0, middle, wall + rise], [a0, near - eave, wall - drop]], roof);
-  solid.face([[a0, far + eave, wall - drop], [a0, middle, wall + rise], [a1, middle, wall + rise], [a1, far + eave, wall - drop]], roof);
-  solid.face([[0, far, wall], [0, near, wall], [0, middle, wall + rise]], walls);
-  solid.face([[length, near, wall], [length, far, wall], [length, middle, wall + rise]], walls);
+  solid.face(
+    [
+      [a1, near - eave, wall - drop],
+      [a1, middle, wall + rise],
+      [a0, middle, wall + rise],
+      [a0, near - eave, wall - drop],
+    ],
+    roof,
+  );
+  solid.face(
+    [
+      [a0, far + eave, wall - drop],
+      [a0, middle, wall + rise],
+      [a1, middle, wall + rise],
+      [a1, far + eave, wall - drop],
+    ],
+    roof,
+  );
+  solid.face(
+    [
+      [0, far, wall],
+      [0, near, wall],
+      [0, middle, wall + rise],
+    ],
+    walls,
+  );
+  solid.face(
+    [
+      [length, near, wall],
+      [length, far, wall],
+      [length, middle, wall + rise],
+    ],
+    walls,
+  );
 }
 
-/** Ridge across. @param {MeshBuilder} solid @param {number} length @param {number} near @param {number} far @param {number} wall @param {number} roof @param {number} walls */
+/**
+ * Ridge across.
+ * @param {MeshBuilder} solid
+ * @param {number} length
+ * @param {number} near
+ * @param {number} far
+ * @param {number} wall
+ * @param {number} roof
+ * @param {number} walls
+ */
 function gableToRoad(solid, length, near, far, wall, roof, walls) {
   const [eave, rise, middle] = [0.5, length * 0.4, length / 2];
   const drop = (eave * rise) / (length / 2);
   const [l0, l1] = [near - 0.4, far + 0.4];
-  solid.face([[-eave, l0, wall - drop], [middle, l0, wall + rise], [middle, l1, wall + rise], [-eave, l1, wall - drop]], roof);
-  solid.face([[length + eave, l1, wall - drop], [middle, l1, wall + rise], [middle, l0, wall + rise], [length + eave, l0, wall - drop]], roof);
-  solid.face([[0, near, wall], [length, near, wall], [middle, near, wall + rise]], walls);
-  solid.face([[length, far, wall], [0, far, wall], [middle, far, wall + rise]], walls);
+  solid.face(
+    [
+      [-eave, l0, wall - drop],
+      [middle, l0, wall + rise],
+      [middle, l1, wall + rise],
+      [-eave, l1, wall - drop],
+    ],
+    roof,
+  );
+  solid.face(
+    [
+      [length + eave, l1, wall - drop],
+      [middle, l1, wall + rise],
+      [middle, l0, wall + rise],
+      [length + eave, l0, wall - drop],
+    ],
+    roof,
+  );
+  solid.face(
+    [
+      [0, near, wall],
+      [length, near, wall],
+      [middle, near, wall + rise],
+    ],
+    walls,
+  );
+  solid.face(
+    [
+      [length, far, wall],
+      [0, far, wall],
+      [middle, far, wall + rise],
+    ],
+    walls,
+  );
 }
 
-/** To the road, with a door. @param {MeshBuilder} solid @param {number} length @param {number} floors @param {1 | -1} away @param {number} seed */
+/**
+ * To the road, with a door.
+ * @param {MeshBuilder} solid
+ * @param {number} length
+ * @param {number} floors
+ * @param {1 | -1} away
+ * @param {number} seed
+ */
 function windows(solid, length, floors, away, seed) {
   const count = Math.floor(length / 2.6);
   const door = Math.floor(chance(seed, 7) * count);
@@ -72,22 +163,59 @@ function windows(solid, length, floors, away, seed) {
   }
 }
 
-/** @param {MeshBuilder} solid @param {number} from @param {number} to @param {number} low @param {number} high @param {1 | -1} away @param {number} hex @param {number} out */
+/**
+ * @param {MeshBuilder} solid
+ * @param {number} from
+ * @param {number} to
+ * @param {number} low
+ * @param {number} high
+ * @param {1 | -1} away
+ * @param {number} hex
+ * @param {number} out
+ */
 function upright(solid, from, to, low, high, away, hex, out) {
   const left = -out * away;
   /** @type {Point[]} */
-  const corners = [[from, left, low], [to, left, low], [to, left, high], [from, left, high]];
+  const corners = [
+    [from, left, low],
+    [to, left, low],
+    [to, left, high],
+    [from, left, high],
+  ];
   solid.face(away > 0 ? corners : corners.reverse(), hex);
 }
 
-/** On the ends, seen by who comes along the road. @param {MeshBuilder} solid @param {number} near @param {number} far @param {number} length @param {number} floors */
+/**
+ * On the ends, seen by who comes along the road.
+ * @param {MeshBuilder} solid
+ * @param {number} near
+ * @param {number} far
+ * @param {number} length
+ * @param {number} floors
+ */
 function sideWindows(solid, near, far, length, floors) {
   for (let floor = 0; floor < floors; floor++) {
     const [low, high] = [1 + 2.8 * floor, 2.3 + 2.8 * floor];
     for (const share of [0.28, 0.72]) {
       const left = near + (far - near) * share;
-      solid.face([[-0.05, left + 0.5, low], [-0.05, left - 0.5, low], [-0.05, left - 0.5, high], [-0.05, left + 0.5, high]], GLASS);
-      solid.face([[length + 0.05, left - 0.5, low], [length + 0.05, left + 0.5, low], [length + 0.05, left + 0.5, high], [length + 0.05, left - 0.5, high]], GLASS);
+      solid.face(
+        [
+          [-0.05, left + 0.5, low],
+          [-0.05, left - 0.5, low],
+          [-0.05, left - 0.5, high],
+          [-0.05, left + 0.5, high],
+        ],
+        GLASS,
+      );
+      solid.face(
+        [
+          [length + 0.05, left - 0.5, low],
+          [length + 0.05, left + 0.5, low],
+          [length + 0.05, left + 0.5, high],
+          [length + 0.05, left - 0.5, high],
+        ],
+        GLASS,
+      );
     }
   }
 }
@@ -102,6 +230,14 @@ export function church(solid, away) {
   const middle = (low + high) / 2;
   solid.cone([-2.5, middle, 16], 3.4, 0, 10, 8, 0x5f6a66);
   for (const up of [10, 13]) {
-    solid.face([[-5.05, middle + 0.7, up], [-5.05, middle - 0.7, up], [-5.05, middle - 0.7, up + 1.8], [-5.05, middle + 0.7, up + 1.8]], GLASS);
+    solid.face(
+      [
+        [-5.05, middle + 0.7, up],
+        [-5.05, middle - 0.7, up],
+        [-5.05, middle - 0.7, up + 1.8],
+        [-5.05, middle + 0.7, up + 1.8],
+      ],
+      GLASS,
+    );
   }
 }

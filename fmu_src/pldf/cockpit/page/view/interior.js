@@ -47,10 +47,18 @@ export class Interior {
   #steeringWheel() {
     const rim = new Mesh(painted(new TorusGeometry(WHEEL_RADIUS_M, 0.016, 8, 40), WHEEL), SOLID);
     const spokes = triangles([
-      [-0.18, 0.02, 0], [-0.18, -0.02, 0], [0.18, -0.02, 0],
-      [-0.18, 0.02, 0], [0.18, -0.02, 0], [0.18, 0.02, 0],
-      [-0.05, 0, 0], [-0.04, -0.18, 0], [0.04, -0.18, 0],
-      [-0.05, 0, 0], [0.04, -0.18, 0], [0.05, 0, 0],
+      [-0.18, 0.02, 0],
+      [-0.18, -0.02, 0],
+      [0.18, -0.02, 0],
+      [-0.18, 0.02, 0],
+      [0.18, -0.02, 0],
+      [0.18, 0.02, 0],
+      [-0.05, 0, 0],
+      [-0.04, -0.18, 0],
+      [0.04, -0.18, 0],
+      [-0.05, 0, 0],
+      [0.04, -0.18, 0],
+      [0.05, 0, 0],
     ]);
     this.wheel.add(rim, new Mesh(painted(spokes, WHEEL), SOLID));
     this.wheel.position.set(0, -0.44, -0.62);
@@ -62,7 +70,12 @@ export class Interior {
   #bonnet(side) {
     const middle = 0.36 * side;
     const [points, colors] = [/** @type {number[][]} */ ([]), /** @type {number[]} */ ([])];
-    const rows = [[-1.0, -0.45, 0.8], [-1.3, -0.405, 0.82], [-1.6, -0.43, 0.79], [-1.8, -0.52, 0.74]];
+    const rows = [
+      [-1.0, -0.45, 0.8],
+      [-1.3, -0.405, 0.82],
+      [-1.6, -0.43, 0.79],
+      [-1.8, -0.52, 0.74],
+    ];
     const across = 10;
     const at = (/** @type {number[]} */ [z, y, half], /** @type {number} */ k) => {
       const share = (2 * k) / across - 1;
@@ -70,9 +83,21 @@ export class Interior {
     };
     for (let row = 1; row < rows.length; row++) {
       for (let k = 0; k < across; k++) {
-        const [a, b, c, d] = [at(rows[row - 1], k), at(rows[row - 1], k + 1), at(rows[row], k + 1), at(rows[row], k)];
+        const [a, b, c, d] = [
+          at(rows[row - 1], k),
+          at(rows[row - 1], k + 1),
+          at(rows[row], k + 1),
+          at(rows[row], k),
+        ];
         points.push(a, b, c, a, c, d);
-        for (const [i, j] of [[row - 1, k], [row - 1, k + 1], [row, k + 1], [row - 1, k], [row, k + 1], [row, k]]) {
+        for (const [i, j] of [
+          [row - 1, k],
+          [row - 1, k + 1],
+          [row, k + 1],
+          [row - 1, k],
+          [row, k + 1],
+          [row, k],
+        ]) {
           const light = 0.16 + 0.16 * Math.sin((Math.PI * j) / across) + 0.07 * i;
           colors.push(light * 0.62, light * 0.85, light);
         }

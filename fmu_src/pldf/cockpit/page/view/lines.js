@@ -5,7 +5,9 @@ import { placesBetween } from "./strips.js";
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
 /** @typedef {import("./mesh.js").MeshBuilder} MeshBuilder */
 /** @typedef {import("./profile.js").CrossSection} CrossSection */
-/** @typedef {"dashed" | "solid" | "town"} Marking of the middle: overtaking or not; none at the edges */
+/**
+ * @typedef {"dashed" | "solid" | "town"} Marking of the middle: overtaking or not; none at the edges
+ */
 
 const PERIOD_M = 12; // a dash and the gap behind it
 const DASH_M = 4;
@@ -27,7 +29,11 @@ export function paintLines(solid, road, section, marking, from_m, to_m) {
   }
 }
 
-/** @param {number} from_m @param {number} to_m @returns {[number, number][]} the parts of dashes that lie between */
+/**
+ * @param {number} from_m
+ * @param {number} to_m
+ * @returns {[number, number][]} the parts of dashes that lie between
+ */
 function dashes(from_m, to_m) {
   /** @type {[number, number][]} */
   const found = [];
@@ -38,7 +44,14 @@ function dashes(from_m, to_m) {
   return found;
 }
 
-/** @param {MeshBuilder} solid @param {RoadModel} road @param {number} at_m @param {number} half_m @param {number} from_m @param {number} to_m */
+/**
+ * @param {MeshBuilder} solid
+ * @param {RoadModel} road
+ * @param {number} at_m
+ * @param {number} half_m
+ * @param {number} from_m
+ * @param {number} to_m
+ */
 function stroke(solid, road, at_m, half_m, from_m, to_m) {
   const places = placesBetween(road, from_m, to_m);
   const edges = places.map((s_m) =>

@@ -55,7 +55,10 @@ export function surfaceOf(map) {
   });
 }
 
-/** The surface on which lines are painted: a little farther away than it is. @param {Texture} map */
+/**
+ * The surface on which lines are painted: a little farther away than it is.
+ * @param {Texture} map
+ */
 export function asphaltOf(map) {
   const material = surfaceOf(map);
   material.polygonOffset = true;

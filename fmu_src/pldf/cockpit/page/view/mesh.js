@@ -4,7 +4,9 @@ import { BufferAttribute, BufferGeometry, Mesh } from "../vendor/three.js";
 import { SOLID } from "./materials.js";
 
 /** @typedef {[number, number, number]} Point ahead, left, up of a frame (m) */
-/** @typedef {{x_m: number, y_m: number, z_m: number, heading_rad: number}} Frame in the world: east, north, up */
+/**
+ * @typedef {{x_m: number, y_m: number, z_m: number, heading_rad: number}} Frame in the world: east, north, up
+ */
 /** @typedef {{x_m: number, y_m: number}} Origin the point of the world where a mesh has its zero */
 
 // Where the light comes from (three's axes: east, up, south), and how much from sun and sky.
@@ -55,7 +57,11 @@ export class MeshBuilder {
 
   /** Corners against the clock, seen from outside. @param {Point[]} corners @param {number} hex */
   face(corners, hex, shade = 1) {
-    this.sceneFace(corners.map((corner) => this.place(corner)), hex, shade);
+    this.sceneFace(
+      corners.map((corner) => this.place(corner)),
+      hex,
+      shade,
+    );
   }
 
   /** The same, already in the scene. @param {Point[]} at @param {number} hex */
@@ -75,11 +81,59 @@ export class MeshBuilder {
    * @param {Point} low corner behind, right, below @param {Point} high @param {number} hex
    */
   box([a0, l0, u0], [a1, l1, u1], hex, top = hex) {
-    this.face([[a1, l1, u0], [a1, l0, u0], [a1, l0, u1], [a1, l1, u1]].map(point).reverse(), hex);
-    this.face([[a0, l0, u0], [a0, l1, u0], [a0, l1, u1], [a0, l0, u1]].map(point).reverse(), hex);
-    this.face([[a0, l1, u0], [a1, l1, u0], [a1, l1, u1], [a0, l1, u1]].map(point).reverse(), hex);
-    this.face([[a1, l0, u0], [a0, l0, u0], [a0, l0, u1], [a1, l0, u1]].map(point).reverse(), hex);
-    this.face([[a0, l0, u1], [a1, l0, u1], [a1, l1, u1], [a0, l1, u1]].map(point), top);
+    this.face(
+      [
+        [a1, l1, u0],
+        [a1, l0, u0],
+        [a1, l0, u1],
+        [a1, l1, u1],
+      ]
+        .map(point)
+        .reverse(),
+      hex,
+    );
+    this.face(
+      [
+        [a0, l0, u0],
+        [a0, l1, u0],
+        [a0, l1, u1],
+        [a0, l0, u1],
+      ]
+        .map(point)
+        .reverse(),
+      hex,
+    );
+    this.face(
+      [
+        [a0, l1, u0],
+        [a1, l1, u0],
+        [a1, l1, u1],
+        [a0, l1, u1],
+      ]
+        .map(point)
+        .reverse(),
+      hex,
+    );
+    this.face(
+      [
+        [a1, l0, u0],
+        [a0, l0, u0],
+        [a0, l0, u1],
+        [a1, l0, u1],
+      ]
+        .map(point)
+        .reverse(),
+      hex,
+    );
+    this.face(
+      [
+        [a0, l0, u1],
+        [a1, l0, u1],
+        [a1, l1, u1],
+        [a0, l1, u1],
+      ].map(point),
+      top,
+    );
   }
 
   /**

@@ -20,7 +20,9 @@ const SIGHT_M = 2600; // as far as the sky
 const FRAME_SHARE = 0.05;
 
 export class Mirror {
-  /** @param {number} side +1: the driver sits on the left and it hangs on the right, -1: the other way round */
+  /**
+   * @param {number} side +1: the driver sits on the left and it hangs on the right, -1: the other way round
+   */
   constructor(side) {
     this.side = side;
     this.target = new WebGLRenderTarget(WIDTH_PX, HEIGHT_PX, { minFilter: LinearFilter });

@@ -42,7 +42,10 @@ const WATER = 0x7fa9bf;
 export function piece(kit, k, detail) {
   const { road, section } = kit;
   const { ground } = kit;
-  const [from_m, to_m] = [Math.max(k * PIECE_M, ground.from_m), Math.min((k + 1) * PIECE_M, ground.to_m)];
+  const [from_m, to_m] = [
+    Math.max(k * PIECE_M, ground.from_m),
+    Math.min((k + 1) * PIECE_M, ground.to_m),
+  ];
   const start = road.at(from_m);
   const origin = { x_m: start.x_m, y_m: start.y_m };
   const solid = new MeshBuilder(origin);
@@ -82,7 +85,13 @@ function surface(kit, solid, from_m, to_m) {
   return [asphalt.mesh(kit.asphalt), grass.mesh(kit.grass), paving.mesh(kit.paving)];
 }
 
-/** Where the cross-section or the lines may change. @param {RoadModel} road @param {number} from_m @param {number} to_m @returns {number[]} in order, with both ends */
+/**
+ * Where the cross-section or the lines may change.
+ * @param {RoadModel} road
+ * @param {number} from_m
+ * @param {number} to_m
+ * @returns {number[]} in order, with both ends
+ */
 function cutsBetween(road, from_m, to_m) {
   const spans = road.stretches.filter((each) => each.kind === "bridge" || each.kind === "village");
   const ends = spans.flatMap((each) => [each.from_m, each.to_m]);
@@ -95,10 +104,18 @@ function cutsBetween(road, from_m, to_m) {
 function markingAt(road, s_m) {
   if (road.stretchAt("village", s_m)) return "town";
   const places = [s_m - PIECE_M / 2, s_m, s_m + PIECE_M / 2];
-  return places.some((at) => Math.abs(road.curvatureAt(at)) > SOLID_LINE_PER_M) ? "solid" : "dashed";
+  return places.some((at) => Math.abs(road.curvatureAt(at)) > SOLID_LINE_PER_M)
+    ? "solid"
+    : "dashed";
 }
 
-/** @param {Strips} grass @param {Kit} kit @param {number[]} places @param {number} from_m beyond the asphalt @param {number} up_m */
+/**
+ * @param {Strips} grass
+ * @param {Kit} kit
+ * @param {number[]} places
+ * @param {number} from_m beyond the asphalt
+ * @param {number} up_m
+ */
 function verges(grass, kit, places, from_m, up_m) {
   const outs = [from_m, from_m + 1.3, 9, 13];
   for (const left of [true, false]) {
@@ -115,7 +132,14 @@ function verges(grass, kit, places, from_m, up_m) {
   }
 }
 
-/** Raised, with a kerb. @param {Strips} paving @param {Kit} kit @param {number[]} places @param {number} width_m @param {number} hex */
+/**
+ * Raised, with a kerb.
+ * @param {Strips} paving
+ * @param {Kit} kit
+ * @param {number[]} places
+ * @param {number} width_m
+ * @param {number} hex
+ */
 function pavement(paving, kit, places, width_m, hex) {
   for (const left of [true, false]) {
     const [foot, top, far] = [
@@ -123,7 +147,10 @@ function pavement(paving, kit, places, width_m, hex) {
       { left_m: beyondEdge(kit.section, left, 0.02), up_m: KERB_M, u: 0.1 },
       { left_m: beyondEdge(kit.section, left, width_m), up_m: KERB_M, u: width_m },
     ];
-    for (const [inner, outer, color] of /** @type {const} */ ([[foot, top, KERB], [top, far, hex]])) {
+    for (const [inner, outer, color] of /** @type {const} */ ([
+      [foot, top, KERB],
+      [top, far, hex],
+    ])) {
       const edges = left ? [outer, inner] : [inner, outer];
       paving.add(places, edges[0], edges[1], color, (s) => s);
     }
@@ -173,6 +200,14 @@ function river(road, site, s_m) {
   const z_m = -RIVER_BELOW_M;
   for (let across = -400; across < 400; across += 20) {
     const [near, far] = [-riverBend(across), -riverBend(across + 20)];
-    solid.face([[near - 14, across, z_m], [near + 14, across, z_m], [far + 14, across + 20, z_m], [far - 14, across + 20, z_m]], WATER);
+    solid.face(
+      [
+        [near - 14, across, z_m],
+        [near + 14, across, z_m],
+        [far + 14, across + 20, z_m],
+        [far - 14, across + 20, z_m],
+      ],
+      WATER,
+    );
   }
 }

@@ -2,7 +2,9 @@
 import { BEYOND_M } from "./profile.js";
 
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
-/** @typedef {{from_m: number, to_m: number, left: boolean, sharp: boolean}} Curve that asks for less speed than its limit */
+/**
+ * @typedef {{from_m: number, to_m: number, left: boolean, sharp: boolean}} Curve that asks for less speed than its limit
+ */
 /**
  * @typedef {object} Sign
  * @property {number} s_m
@@ -10,9 +12,13 @@ import { BEYOND_M } from "./profile.js";
  * @property {string} text number of a limit, name of a place
  * @property {string} unit below a number that is no km/h
  */
-/** @typedef {{s_m: number, left: boolean, to_left: boolean}} Board chevrons on the `left` or right side that point to one side */
+/**
+ * @typedef {{s_m: number, left: boolean, to_left: boolean}} Board chevrons on the `left` or right side that point to one side
+ */
 /** @typedef {{from_m: number, to_m: number, left: boolean}} Rail */
-/** @typedef {{signs: Sign[], boards: Board[], rails: Rail[], posts: number[], curves: Curve[]}} Furniture */
+/**
+ * @typedef {{signs: Sign[], boards: Board[], rails: Rail[], posts: number[], curves: Curve[]}} Furniture
+ */
 
 const KMH_PER_MPS = 3.6;
 const MPH_PER_MPS = 3600 / 1609.344;
@@ -91,7 +97,8 @@ function curvesOf(road) {
     if (last && last.left === curvature > 0 && s_m - last.to_m < SAME_CURVE_M) {
       last.to_m = s_m;
       last.strongest = Math.max(last.strongest, felt);
-    } else found.push({ from_m: s_m, to_m: s_m, left: curvature > 0, sharp: false, strongest: felt });
+    } else
+      found.push({ from_m: s_m, to_m: s_m, left: curvature > 0, sharp: false, strongest: felt });
   });
   return found.map(({ strongest, ...curve }) => ({ ...curve, sharp: strongest >= SHARP_MPS2 }));
 }
@@ -104,7 +111,9 @@ function warnings(road, curves) {
     const s_m = Math.max(curve.from_m - WARNING_M, behind_m);
     const hidden = road.limits.some((span) => Math.abs(span.from_m - s_m) <= 10);
     if (!curve.sharp || hidden || curve.from_m - s_m < WARNING_MIN_M) return [];
-    const kind = /** @type {"curve_left" | "curve_right"} */ (curve.left ? "curve_left" : "curve_right");
+    const kind = /** @type {"curve_left" | "curve_right"} */ (
+      curve.left ? "curve_left" : "curve_right"
+    );
     return [{ s_m, kind, text: "", unit: "" }];
   });
 }

@@ -1,8 +1,12 @@
 // How wide the road is, and what lies beside it.
 
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
-/** @typedef {{at_m: number, kind: "edge" | "middle" | "lane"}} Line to the left of the road's line */
-/** @typedef {{left_m: number, right_m: number, lines: Line[]}} CrossSection how far the asphalt goes to both sides */
+/**
+ * @typedef {{at_m: number, kind: "edge" | "middle" | "lane"}} Line to the left of the road's line
+ */
+/**
+ * @typedef {{left_m: number, right_m: number, lines: Line[]}} CrossSection how far the asphalt goes to both sides
+ */
 
 export const MARGIN_M = 0.5; // asphalt beyond the edge line
 export const PAVEMENT_M = 2;
@@ -27,7 +31,12 @@ export function crossSection(road) {
   return { left_m: left + MARGIN_M, right_m: right + MARGIN_M, lines };
 }
 
-/** Edge of the asphalt. @param {CrossSection} section @param {boolean} left @param {number} out_m beyond it */
+/**
+ * Edge of the asphalt.
+ * @param {CrossSection} section
+ * @param {boolean} left
+ * @param {number} out_m beyond it
+ */
 export function beyondEdge(section, left, out_m) {
   return left ? section.left_m + out_m : -section.right_m - out_m;
 }

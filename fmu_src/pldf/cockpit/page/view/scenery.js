@@ -64,7 +64,8 @@ const GROWTH = {
       const out = CLEAR_M + 1 + 22 * chance(seed, 71) ** 2;
       plant(scene, s_m, left, out, (solid) => leafTree(solid, seed, scene.detail));
     }
-    if (scene.detail && s_m % 4 === 0 && hills(s_m / 120, left ? 3 : 8, 11) > 0.1) fence(scene, s_m, left);
+    if (scene.detail && s_m % 4 === 0 && hills(s_m / 120, left ? 3 : 8, 11) > 0.1)
+      fence(scene, s_m, left);
     edge(scene, s_m, left, seed);
   },
   village(scene, s_m, left, seed) {
@@ -85,10 +86,18 @@ const GROWTH = {
   bridge() {},
 };
 
-/** Bushes and high grass at the side of the road. @param {Scene} scene @param {number} s_m @param {boolean} left @param {number} seed */
+/**
+ * Bushes and high grass at the side of the road.
+ * @param {Scene} scene
+ * @param {number} s_m
+ * @param {boolean} left
+ * @param {number} seed
+ */
 function edge(scene, s_m, left, seed) {
   if (scene.detail && chance(seed, 90) < 0.035) {
-    plant(scene, s_m, left, CLEAR_M + 4 * chance(seed, 91), (solid) => bush(solid, seed, scene.detail));
+    plant(scene, s_m, left, CLEAR_M + 4 * chance(seed, 91), (solid) =>
+      bush(solid, seed, scene.detail),
+    );
   }
   if (scene.detail === 2 && chance(seed, 92) < 0.45) {
     plant(scene, s_m, left, 1.4 + 3 * chance(seed, 93), (solid) => tuft(solid, seed));
@@ -130,7 +139,11 @@ function build(scene, s_m, left, out_m, raise) {
   const [cos, sin] = [Math.cos(heading_rad), Math.sin(heading_rad)];
   const deep = left ? BUILDING_M[1] : -BUILDING_M[1];
   const clear_m = Math.max(section.left_m, section.right_m) + PAVEMENT_M;
-  const free = [[BUILDING_M[0], 0], [BUILDING_M[0], deep], [0, deep]].every(
+  const free = [
+    [BUILDING_M[0], 0],
+    [BUILDING_M[0], deep],
+    [0, deep],
+  ].every(
     ([a, l]) => scene.height(x_m + a * cos - l * sin, y_m + a * sin + l * cos).distance_m > clear_m,
   );
   if (free) plant(scene, s_m, left, out_m, raise);
@@ -141,4 +154,3 @@ const VERGE_M = 9;
 export function vergeAt(out_m) {
   return -0.03 - 0.075 * Math.min(out_m, VERGE_M);
 }
-

@@ -10,7 +10,10 @@ const CALM = 8; // so many looks must be fast before there are more pixels again
 
 /** Watches the time between frames. */
 export class Sharpness {
-  /** @param {number} finest pixels of the picture per pixel of the page @param {boolean} software */
+  /**
+   * @param {number} finest pixels of the picture per pixel of the page
+   * @param {boolean} software
+   */
   constructor(finest, software) {
     this.finest = finest;
     this.ratio = finest;

@@ -52,8 +52,12 @@ function facing(solid, mesh, up_m, half_m) {
   mesh.position.set(...toScene(solid.origin, x_m, y_m, z_m + up_m));
   mesh.rotation.y = heading_rad - Math.PI / 2;
   solid.face(
-    [[0.04, half_m, up_m - half_m], [0.04, half_m, up_m + half_m],
-     [0.04, -half_m, up_m + half_m], [0.04, -half_m, up_m - half_m]],
+    [
+      [0.04, half_m, up_m - half_m],
+      [0.04, half_m, up_m + half_m],
+      [0.04, -half_m, up_m + half_m],
+      [0.04, -half_m, up_m - half_m],
+    ],
     BACK_HEX,
   );
   return mesh;
@@ -76,7 +80,14 @@ function board(key, to_left) {
     pen.fillStyle = RED;
     const tip = (/** @type {number} */ x) => (to_left ? x : 1 - x) * size;
     pen.beginPath();
-    for (const [x, y] of [[0.18, 0.5], [0.55, 0.06], [0.9, 0.06], [0.53, 0.5], [0.9, 0.94], [0.55, 0.94]]) {
+    for (const [x, y] of [
+      [0.18, 0.5],
+      [0.55, 0.06],
+      [0.9, 0.06],
+      [0.53, 0.5],
+      [0.9, 0.94],
+      [0.55, 0.94],
+    ]) {
       pen.lineTo(tip(x), y * size);
     }
     pen.fill();
@@ -102,7 +113,12 @@ function painted(key, paint) {
   return found;
 }
 
-/** @param {CanvasRenderingContext2D} pen @param {number} size @param {string} text @param {string} unit */
+/**
+ * @param {CanvasRenderingContext2D} pen
+ * @param {number} size
+ * @param {string} text
+ * @param {string} unit
+ */
 function limit(pen, size, text, unit) {
   const middle = size / 2;
   ring(pen, middle, middle, "#ffffff");
@@ -117,7 +133,12 @@ function limit(pen, size, text, unit) {
   pen.fillText(unit, middle, size * 0.73);
 }
 
-/** @param {CanvasRenderingContext2D} pen @param {number} middle @param {number} radius @param {string} color */
+/**
+ * @param {CanvasRenderingContext2D} pen
+ * @param {number} middle
+ * @param {number} radius
+ * @param {string} color
+ */
 function ring(pen, middle, radius, color) {
   pen.fillStyle = color;
   pen.beginPath();
@@ -125,7 +146,12 @@ function ring(pen, middle, radius, color) {
   pen.fill();
 }
 
-/** @param {CanvasRenderingContext2D} pen @param {number} size @param {string} text @param {boolean} end */
+/**
+ * @param {CanvasRenderingContext2D} pen
+ * @param {number} size
+ * @param {string} text
+ * @param {boolean} end
+ */
 function town(pen, size, text, end) {
   pen.fillStyle = "#111111";
   pen.fillRect(0, 0, size, size);
@@ -144,9 +170,17 @@ function town(pen, size, text, end) {
   pen.stroke();
 }
 
-/** A place without a name: its houses. @param {CanvasRenderingContext2D} pen @param {number} size */
+/**
+ * A place without a name: its houses.
+ * @param {CanvasRenderingContext2D} pen
+ * @param {number} size
+ */
 function houses(pen, size) {
-  for (const [x, width, height] of [[0.16, 0.2, 0.3], [0.4, 0.16, 0.5], [0.6, 0.24, 0.34]]) {
+  for (const [x, width, height] of [
+    [0.16, 0.2, 0.3],
+    [0.4, 0.16, 0.5],
+    [0.6, 0.24, 0.34],
+  ]) {
     const [left, right, top] = [x * size, (x + width) * size, (0.78 - height) * size];
     pen.fillRect(left, top + 0.12 * size, right - left, height * size - 0.12 * size);
     pen.beginPath();

@@ -13,12 +13,22 @@ const DEGREE = Math.PI / 180;
 const SIDES = 48;
 // Elevation in degrees, colour of the air there.
 const AIR = /** @type {[number, number][]} */ ([
-  [-8, HAZE_HEX], [0, HAZE_HEX], [4, 0xb6d3e6], [12, 0x9fc8e6], [28, 0x74abdb], [55, ZENITH], [90, ZENITH],
+  [-8, HAZE_HEX],
+  [0, HAZE_HEX],
+  [4, 0xb6d3e6],
+  [12, 0x9fc8e6],
+  [28, 0x74abdb],
+  [55, ZENITH],
+  [90, ZENITH],
 ]);
 const CLOUDS = 64;
 const PUFF_SIDES = 10;
 // Height in degrees, how many hills around, colour; from the farthest on.
-const RIDGES = [[6.4, 5, 0x93afc4, 1], [4.2, 8, 0x7d9fae, 2], [2.4, 13, 0x749a8c, 3]];
+const RIDGES = [
+  [6.4, 5, 0x93afc4, 1],
+  [4.2, 8, 0x7d9fae, 2],
+  [2.4, 13, 0x749a8c, 3],
+];
 const RIDGE_SIDES = 240;
 const FOOT_DEG = -0.6;
 
@@ -45,7 +55,12 @@ class Painter {
     this.index = [];
   }
 
-  /** @param {number} azimuth @param {number} elevation @param {Color} color @returns {number} which corner it is */
+  /**
+   * @param {number} azimuth
+   * @param {number} elevation
+   * @param {Color} color
+   * @returns {number} which corner it is
+   */
   corner(azimuth, elevation, color) {
     const [a, e] = [azimuth * DEGREE, elevation * DEGREE];
     this.positions.push(
@@ -100,7 +115,13 @@ function cloud(paint, seed) {
   }
 }
 
-/** @param {Painter} paint @param {number} azimuth @param {number} base @param {number} wide @param {number} high degrees */
+/**
+ * @param {Painter} paint
+ * @param {number} azimuth
+ * @param {number} base
+ * @param {number} wide
+ * @param {number} high degrees
+ */
 function puff(paint, azimuth, base, wide, high) {
   const [white, grey] = [rgb(0xf7fafc), rgb(0xc9dbe8)];
   const at = (/** @type {number} */ x, /** @type {number} */ y) => {
@@ -116,7 +137,14 @@ function puff(paint, azimuth, base, wide, high) {
   for (let k = 1; k < rim.length; k++) paint.index.push(middle, rim[k - 1], rim[k]);
 }
 
-/** Hills, lost in haze below. @param {Painter} paint @param {number} height @param {number} waves @param {number} hex @param {number} seed */
+/**
+ * Hills, lost in haze below.
+ * @param {Painter} paint
+ * @param {number} height
+ * @param {number} waves
+ * @param {number} hex
+ * @param {number} seed
+ */
 function ridge(paint, height, waves, hex, seed) {
   const azimuths = around(RIDGE_SIDES);
   const foot = azimuths.map((azimuth) => paint.corner(azimuth, FOOT_DEG, rgb(HAZE_HEX)));

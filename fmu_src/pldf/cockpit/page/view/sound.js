@@ -64,7 +64,18 @@ function parts(context) {
   noise.connect(roadTone);
   noise.connect(windTone);
   noise.start();
-  return { context, all, motor, under, motorTone, motorGain, roadTone, roadGain, windTone, windGain };
+  return {
+    context,
+    all,
+    motor,
+    under,
+    motorTone,
+    motorGain,
+    roadTone,
+    roadGain,
+    windTone,
+    windGain,
+  };
 }
 
 /** @param {AudioContext} context @param {number} gain @param {AudioNode} to */

@@ -1,9 +1,5 @@
 // Strips along the road: its surface, verges, kerbs, bridge decks.
-import {
-  BufferAttribute,
-  BufferGeometry,
-  Mesh,
-} from "../vendor/three.js";
+import { BufferAttribute, BufferGeometry, Mesh } from "../vendor/three.js";
 import { lightAlong, rgb, toScene } from "./mesh.js";
 
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
@@ -40,7 +36,10 @@ export class Strips {
     for (const s_m of places) {
       const { heading_rad } = this.road.at(s_m);
       const normal = [Math.sin(slope), Math.cos(slope)];
-      const [n_east, n_north] = [normal[0] * Math.sin(heading_rad), -normal[0] * Math.cos(heading_rad)];
+      const [n_east, n_north] = [
+        normal[0] * Math.sin(heading_rad),
+        -normal[0] * Math.cos(heading_rad),
+      ];
       // A strip that rises to the right leans to the left.
       const light = lightAlong([-n_east, normal[1], n_north]);
       for (const edge of [left, right]) {
@@ -60,8 +59,11 @@ export class Strips {
   mesh(material) {
     if (!this.index.length) return null;
     const geometry = new BufferGeometry();
-    const set = (/** @type {string} */ name, /** @type {number[]} */ values, /** @type {number} */ size) =>
-      geometry.setAttribute(name, new BufferAttribute(new Float32Array(values), size));
+    const set = (
+      /** @type {string} */ name,
+      /** @type {number[]} */ values,
+      /** @type {number} */ size,
+    ) => geometry.setAttribute(name, new BufferAttribute(new Float32Array(values), size));
     set("position", this.positions, 3);
     set("color", this.colors, 3);
     set("uv", this.uvs, 2);

@@ -58,7 +58,13 @@ export function tile(ground, i, j, fine) {
 
 /** @typedef {{at: import("./mesh.js").Point, distance_m: number}} Corner */
 
-/** @param {Ground} ground @param {{x_m: number, y_m: number}} origin @param {number} cells @param {number} below_m @returns {Corner[]} */
+/**
+ * @param {Ground} ground
+ * @param {{x_m: number, y_m: number}} origin
+ * @param {number} cells
+ * @param {number} below_m
+ * @returns {Corner[]}
+ */
 function cornersOf(ground, origin, cells, below_m) {
   const half = TILE_M / 2;
   const height = ground.around(origin.x_m + half, origin.y_m + half, half * 1.5);

@@ -30,7 +30,11 @@ export function textureOf(picture, { repeat = false, anisotropy = 1 } = {}) {
   return texture;
 }
 
-/** The road from edge to edge, without its lines. @param {CrossSection} section @param {number} anisotropy */
+/**
+ * The road from edge to edge, without its lines.
+ * @param {CrossSection} section
+ * @param {number} anisotropy
+ */
 export function asphaltTexture(section, anisotropy) {
   const [width, height] = ASPHALT_PX;
   const { made, pen } = canvas(width, height);
@@ -46,7 +50,11 @@ export function asphaltTexture(section, anisotropy) {
   return textureOf(made, { repeat: true, anisotropy });
 }
 
-/** Where wheels run: beside the middle of each lane. @param {CrossSection} section @returns {number[]} */
+/**
+ * Where wheels run: beside the middle of each lane.
+ * @param {CrossSection} section
+ * @returns {number[]}
+ */
 function wheelTracks({ lines }) {
   const edges = lines.map((line) => line.at_m).sort((a, b) => a - b);
   const middles = edges.slice(1).map((at, k) => (at + edges[k]) / 2);
@@ -105,10 +113,22 @@ export function grassTexture(anisotropy) {
   return textureOf(made, { repeat: true, anisotropy });
 }
 
-/** Also where the picture goes on. @param {CanvasRenderingContext2D} pen @param {number} x @param {number} y @param {number} dx @param {number} dy */
+/**
+ * Also where the picture goes on.
+ * @param {CanvasRenderingContext2D} pen
+ * @param {number} x
+ * @param {number} y
+ * @param {number} dx
+ * @param {number} dy
+ */
 function blade(pen, x, y, dx, dy) {
   pen.beginPath();
-  for (const [ox, oy] of [[0, 0], [GRASS_PX, 0], [0, GRASS_PX], [-GRASS_PX, 0]]) {
+  for (const [ox, oy] of [
+    [0, 0],
+    [GRASS_PX, 0],
+    [0, GRASS_PX],
+    [-GRASS_PX, 0],
+  ]) {
     pen.moveTo(x + ox, y + oy);
     pen.lineTo(x + dx + ox, y - dy + oy);
   }

@@ -122,9 +122,18 @@ export class View {
     this.#park(this.ahead.mesh, front_m, this.road.lane_m, 0, origin);
   }
 
-  /** @param {import("../vendor/three.js").Mesh} mesh @param {number} front_m @param {number} left_m @param {number} turn @param {{x_m: number, y_m: number}} origin */
+  /**
+   * @param {import("../vendor/three.js").Mesh} mesh
+   * @param {number} front_m
+   * @param {number} left_m
+   * @param {number} turn
+   * @param {{x_m: number, y_m: number}} origin
+   */
   #park(mesh, front_m, left_m, turn, origin) {
-    const [front, rear] = [this.road.at(front_m, left_m), this.road.at(front_m - CAR_LENGTH_M, left_m)];
+    const [front, rear] = [
+      this.road.at(front_m, left_m),
+      this.road.at(front_m - CAR_LENGTH_M, left_m),
+    ];
     mesh.position.set(front.x_m - origin.x_m, front.z_m, origin.y_m - front.y_m);
     const heading = Math.atan2(front.y_m - rear.y_m, front.x_m - rear.x_m) + turn;
     mesh.rotation.order = "YXZ";

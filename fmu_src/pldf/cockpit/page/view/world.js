@@ -75,14 +75,22 @@ export class World {
   /** @param {number} s_m */
   #pieces(s_m) {
     const { ground } = this.kit;
-    const [first, last] = [Math.floor(ground.from_m / PIECE_M), Math.ceil(ground.to_m / PIECE_M) - 1];
+    const [first, last] = [
+      Math.floor(ground.from_m / PIECE_M),
+      Math.ceil(ground.to_m / PIECE_M) - 1,
+    ];
     const [from, to] = [s_m - BEHIND_M, s_m + SIGHT_M].map((at) => Math.floor(at / PIECE_M));
     const wanted = [];
     for (let k = Math.max(from, first); k <= Math.min(to, last); k++) {
       const middle = (k + 0.5) * PIECE_M;
       const distance_m = Math.abs(middle - s_m);
       const detail = middle < s_m - PIECE_M ? far(distance_m) : detailAt(distance_m);
-      wanted.push({ key: `piece ${k}`, detail, distance_m, build: () => piece(this.kit, k, detail) });
+      wanted.push({
+        key: `piece ${k}`,
+        detail,
+        distance_m,
+        build: () => piece(this.kit, k, detail),
+      });
     }
     return wanted;
   }
@@ -108,7 +116,11 @@ export class World {
     return wanted;
   }
 
-  /** @param {string} key @param {Detail} detail @param {{group: Group | Mesh, origin: Origin}} made */
+  /**
+   * @param {string} key
+   * @param {Detail} detail
+   * @param {{group: Group | Mesh, origin: Origin}} made
+   */
   #keep(key, detail, { group, origin }) {
     this.group.add(group);
     this.built.set(key, { group, origin, detail });
