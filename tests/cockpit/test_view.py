@@ -33,10 +33,13 @@ const options = { fov_deg: 60, camera: "cockpit", mirror: false, reducedMotion: 
 const sight = { speed_mps: 20, lateral_m: 0, heading_rad: 0, lead: null };
 globalThis.view = new View(canvas, roadOf(road), options);
 view.sharpness.frame = () => false; // as many pixels on a slow machine
-globalThis.picture = (s_m, changed = {}) => {
-  view.frames = 0; // all that is in sight is built
+globalThis.drawn = (s_m, changed = {}) => {
   view.draw({ ...sight, s_m, ...changed });
   return canvas.toDataURL("image/png").split(",")[1];
+};
+globalThis.picture = (s_m, changed) => {
+  view.world.around_m = Infinity; // all that is in sight is built
+  return drawn(s_m, changed);
 };
 // Instead of a loudspeaker: root of the mean square, and peak, of the second second.
 globalThis.heard = async (motion) => {
@@ -153,6 +156,12 @@ def test_a_long_drive_keeps_only_what_is_in_sight(window: webdriver.Chrome) -> N
     """)
     assert max(counts) < 2 * min(counts)
     assert counts[-1] < 1.3 * max(counts[:6])
+
+
+def test_after_a_jump_all_is_there(window: webdriver.Chrome) -> None:
+    picture(window, 300.0)
+    same = "return drawn(2500) === picture(2500)"
+    assert window.execute_script(same)
 
 
 def test_the_other_camera_and_the_mirror(window: webdriver.Chrome) -> None:

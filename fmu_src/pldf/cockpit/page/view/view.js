@@ -82,7 +82,7 @@ export class View {
   /** @param {Sight} sight */
   draw(sight) {
     if (this.sharpness.frame(performance.now())) this.resize();
-    this.world.surround(sight.s_m, this.frames === 0);
+    this.world.surround(sight.s_m);
     const { camera, reducedMotion, mirror } = this.options;
     const origin = look(this.lens, this.road, sight, camera, reducedMotion);
     this.world.shift(origin);
@@ -106,6 +106,8 @@ export class View {
     this.sky.geometry.dispose();
     for (const car of [this.own, this.ahead]) car.dispose();
     this.renderer.dispose();
+    // Browsers keep few of these pictures alive, and a study has many drives.
+    this.renderer.forceContextLoss();
   }
 
   /** @param {Sight} sight @param {{x_m: number, y_m: number}} origin */

@@ -16,7 +16,9 @@ import { asphaltTexture, grassTexture } from "./textures.js";
 const BEHIND_M = 300;
 const NEAR_M = 140;
 const FAR_M = 420;
-const BUILT_AT_ONCE = 1; // per frame: a drive must not stutter
+const BUILDING_MS = 4; // per frame: a drive must not stutter
+const STAYS_M = 2; // nothing new to be seen
+const JUMP_M = 150;
 
 export class World {
   /** @param {RoadModel} road @param {number} anisotropy how sharp pictures are at a flat angle */
@@ -36,25 +38,30 @@ export class World {
     };
     /** @type {Map<string, Built>} */
     this.built = new Map();
+    /** the place around which all is built */
+    this.around_m = Infinity;
   }
 
   /**
-   * Build what comes into sight around a place and drop what is out of it.
+   * Build what comes into sight around a place and drop what is out of it: what is near first, and
+   * for a few milliseconds at a time; all at once where nothing of it is there.
    * @param {number} s_m
-   * @param {boolean} all at once, before the first frame
    */
-  surround(s_m, all) {
+  surround(s_m) {
+    const moved_m = Math.abs(s_m - this.around_m);
+    if (moved_m < STAYS_M) return;
+    const until_ms = moved_m < JUMP_M ? performance.now() + BUILDING_MS : Infinity;
     const wanted = [...this.#pieces(s_m), ...this.#tiles(s_m)];
     const keys = new Set(wanted.map((each) => each.key));
     for (const [key, built] of this.built) if (!keys.has(key)) this.#drop(key, built);
-    let room = all ? Infinity : BUILT_AT_ONCE;
-    for (const { key, detail, build } of wanted.sort((a, b) => a.distance_m - b.distance_m)) {
+    const missing = wanted.filter(({ key, detail }) => this.built.get(key)?.detail !== detail);
+    for (const { key, detail, build } of missing.sort((a, b) => a.distance_m - b.distance_m)) {
+      if (performance.now() > until_ms) return; // the next frame goes on
       const there = this.built.get(key);
-      if (there?.detail === detail) continue;
-      if (room-- <= 0) break;
       if (there) this.#drop(key, there);
       this.#keep(key, detail, build());
     }
+    this.around_m = s_m;
   }
 
   /** Put everything where it lies as seen from a point. @param {Origin} eye */
