@@ -19,15 +19,15 @@ import { MathUtils } from "../vendor/three.js";
 const EYE_BEHIND_M = 2; // of the front bumper
 const EYE_UP_M = 1.22;
 const EYE_ASIDE_M = 0.36; // towards the middle of the road
-const CHASE_BEHIND_M = 11.5;
-const CHASE_UP_M = 3.3;
-const CHASE_DOWN_RAD = 0.09;
+const CHASE_BEHIND_M = 18;
+const CHASE_UP_M = 3.8; // so that the car is seen above the cluster
+const CHASE_DOWN_RAD = 0.02;
 // A body gives way a little: a car of 4 Hz is felt, not measured.
 const DIVE_RAD_PER_MPS2 = 0.0035;
 const ROLL_RAD_PER_MPS2 = 0.0045;
 const SHAKE_M = 0.004;
 // Where the horizon of a level road lies, from above: less sky, more road.
-const HORIZON = { cockpit: 0.43, chase: 0.4 };
+const HORIZON = { cockpit: 0.43, chase: 0.28 };
 
 /**
  * Set the lens so that straight ahead `fov_deg` are seen from left to right. The horizon is moved by
