@@ -60,7 +60,8 @@ function offered(app) {
     };
     const timer = setInterval(look, LOOK_MS);
     look();
-    showPage(app, say("device_title"), element("p", {}, say("device_text")), list, keysTable());
+    const keys = element("div", {}, element("h2", {}, say("keys_title")), keysTable());
+    showPage(app, say("device_title"), element("p", {}, say("device_text")), list, keys);
   });
 }
 

@@ -87,14 +87,9 @@ function titleOf({ app, step, record }) {
  */
 function introduced(session) {
   const { app, step, record } = session;
-  const task = step.kind === "practice" ? say("practice_text") : taskOf(session);
+  const practises = step.kind === "practice";
+  const task = practises ? say("practice_text") : taskOf(session);
   const cutOff = record.attempts.at(-1)?.ending === "cut off";
-  const settings = element(
-    "details",
-    {},
-    element("summary", {}, sayDrive("settings")),
-    settingsForm(app.settings, { study: true }),
-  );
   return choose(
     app,
     titleOf(session),
@@ -104,14 +99,23 @@ function introduced(session) {
       element("p", { class: "task" }, task),
       record.explanation === "text" && element("p", {}, say("explained_text")),
       element("p", { class: "unwell" }, say("unwell")),
-      keysTable(app.bundle.plan.steering === "person"),
-      settings,
+      folded(sayDrive("keys_title"), keysTable(app.bundle.plan.steering === "person"), practises),
+      folded(sayDrive("settings"), settingsForm(app.settings, { study: true }), false),
     ],
     [
       { text: say("start_drive"), choice: /** @type {const} */ ("start"), kind: "main" },
-      { text: sayDrive("device_title"), choice: /** @type {const} */ ("device") },
+      { text: sayDrive("change_device"), choice: /** @type {const} */ ("device") },
     ],
   );
+}
+
+/**
+ * @param {string} title
+ * @param {Node} content
+ * @param {boolean} open
+ */
+function folded(title, content, open) {
+  return element("details", { open }, element("summary", {}, title), content);
 }
 
 /** @param {Session} session */

@@ -29,5 +29,5 @@ export function keysTable(steered = true) {
       element("td", {}, say(word)),
     ),
   );
-  return element("table", { class: "keys" }, element("caption", {}, say("keys_title")), ...rows);
+  return element("table", { class: "keys" }, ...rows);
 }
