@@ -80,6 +80,13 @@ test("a drive that did not arrive is kept apart and changes no profile", async (
   ]);
 });
 
+test("a drive that failed before its first step leaves no empty file", async () => {
+  const storage = memoryStorage();
+  const failed = { ...result("failed", 1), recording: "" };
+  assert.equal(await keepDrive(storage, begun("P07", 7), drive("A2"), failed), "");
+  assert.deepEqual(await storage.list(""), []);
+});
+
 test("a practice drive leaves no profile", async () => {
   const storage = memoryStorage();
   const practice = /** @type {const} */ ({ ...drive("1"), kind: "practice" });

@@ -90,7 +90,7 @@ async function keepTables(storage, bundle) {
 }
 
 /**
- * Store what a drive left behind, all but the record; return the recording's path.
+ * Store what a drive left behind, all but the record; return the recording's path, empty: none.
  *
  * The same drive stored twice leaves the same files, so it may be interrupted anywhere.
  * @param {Storage} storage
@@ -100,6 +100,9 @@ async function keepTables(storage, bundle) {
  * @returns {Promise<string>}
  */
 export async function keepDrive(storage, record, attempt, result) {
+  if (!result.recording) {
+    return ""; // the drive failed before its first step
+  }
   const [path, inputs] = pathsOf(record, attempt, result.ending === "arrived");
   await storage.write(path, text.encode(result.recording));
   await storage.write(inputs, text.encode(inputsCsv(result.inputs)));
