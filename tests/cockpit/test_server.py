@@ -114,7 +114,8 @@ def test_the_page_and_nothing_beside_it(asked: TestClient) -> None:
     script = asked.get(f"{ROOT}/dom.js")
     assert script.content == (PAGE / "dom.js").read_bytes()
     assert script.headers["content-type"].startswith("text/javascript")
-    for path in ("../server.py", "%2e%2e/server.py", "..%2fserver.py", "vendor", "/etc/passwd"):
+    outside = ("../server.py", "%2e%2e/server.py", "..%2fserver.py", "/etc/passwd")
+    for path in (*outside, "vendor", "dom.js%00"):
         assert asked.get(f"{ROOT}/{path}").status_code in (403, 404)
 
 
@@ -212,6 +213,16 @@ def test_a_simulator_feeds_clusters(asked: TestClient) -> None:
         assert told.status_code == 204
         heard = {"values": {"vehicle.speed_mps": 10.0}, "kind": "frame"}
         assert viewer.receive_json() == heard
+
+
+@pytest.mark.parametrize("number", ["NaN", "-Infinity", "1e999"])
+def test_what_no_browser_reads_is_told_to_nobody(asked: TestClient, number: str) -> None:
+    text = f'{{"values": {{"lead.gap_m": {number}}}}}'
+    told = asked.post(f"{ROOT}/api/cluster", content=text)
+    assert (told.status_code, told.json()["error"]) == (
+        400,
+        "NaN and Infinity are no numbers in JSON",
+    )
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{", '{"kind": "shell"}', "[" * 60_000])

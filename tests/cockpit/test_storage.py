@@ -28,6 +28,8 @@ OUTSIDE = (
     "earlier/recordings/P07_A1-1.csv",
     "index.html",
     "Session.json",
+    "con.csv",
+    "recordings/NUL.csv",
 )
 OURS = (
     "recordings/P07_A1.csv",

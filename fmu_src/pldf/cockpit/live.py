@@ -115,4 +115,8 @@ def checked(text: str) -> tuple[str, str, str]:
     kind = message.setdefault("kind", "frame")
     if kind not in KINDS:
         raise Refused(HTTPStatus.BAD_REQUEST, f"kind must be one of {', '.join(KINDS)}")
-    return kind, str(message.get("participant", "")), json.dumps(message)
+    try:
+        told = json.dumps(message, allow_nan=False)
+    except ValueError:  # Python reads such, no browser does
+        raise Refused(HTTPStatus.BAD_REQUEST, "NaN and Infinity are no numbers in JSON") from None
+    return kind, str(message.get("participant", "")), told

@@ -158,9 +158,12 @@ class _Desk:
 async def _page(request: Request) -> Response:
     """Return a file of the page, which holds nothing secret."""
     path = request.path_params["path"] or "index.html"
-    file = (PAGE / path).resolve()
-    kind = _TYPES.get(file.suffix)
-    if kind is None or not file.is_relative_to(PAGE.resolve()) or not file.is_file():
+    try:
+        file = (PAGE / path).resolve()
+        there = file.is_relative_to(PAGE.resolve()) and file.is_file()
+    except (OSError, ValueError):  # a path that no disk takes
+        there = False
+    if not there or (kind := _TYPES.get(file.suffix)) is None:
         raise Refused(HTTPStatus.NOT_FOUND, f"{path}: there is no such page")
     return Response(await run_in_threadpool(file.read_bytes), media_type=kind)
 

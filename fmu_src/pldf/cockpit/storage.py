@@ -143,7 +143,7 @@ class Folder:
 
 def _is_ours(path: str) -> bool:
     if _is_table(path):
-        return True
+        return _DEVICES.fullmatch(path) is None
     folder, *names = path.split("/")
     allowed = names and folder in _FOLDERS and len(names) < _DEPTH_MAX
     if not allowed or (folder != "sessions" and len(names) > 1):

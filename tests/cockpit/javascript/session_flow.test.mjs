@@ -111,12 +111,21 @@ test("order and explanation follow from the number, if the address does not say 
     const who = participantOf(typed, order, study);
     return [who?.order, who?.explanation];
   };
-  assert.deepEqual(["1", "2", "3", "4"].map((typed) => of(typed)), [
+  assert.deepEqual(["1", "2", "3", "4", "5", "6", "7"].map((typed) => of(typed)), [
     ["AB", "none"],
+    ["BA", "none"],
+    ["AB", "icon"],
     ["BA", "icon"],
     ["AB", "text"],
-    ["BA", "none"],
+    ["BA", "text"],
+    ["AB", "none"],
   ]);
-  assert.deepEqual(of("2", "AB"), ["AB", "icon"]);
+  assert.deepEqual(of("4", "AB"), ["AB", "icon"]);
   assert.equal(participantOf("2", null, plan())?.order, "AB");
+});
+
+test("in a study with one order the explanations change with each number", () => {
+  const study = plan({ counterbalanced: false, explanations: ["none", "text"] });
+  const told = ["1", "2", "3"].map((typed) => participantOf(typed, null, study)?.explanation);
+  assert.deepEqual(told, ["none", "text", "none"]);
 });

@@ -66,7 +66,7 @@
  * @property {number} step_s
  * @property {number} end_m where a drive ends
  * @property {Record<string, number>} breaks phase: minutes of rest after it
- * @property {("none" | "icon" | "text")[]} explanations conditions, taken in turn by number of the participant
+ * @property {("none" | "icon" | "text")[]} explanations conditions, taken in turn by number of the participant (counterbalanced: by pairs of numbers)
  * @property {"assisted" | "person"} steering
  * @property {number} fov_deg horizontal field of view
  */

@@ -44,12 +44,23 @@ export function participantOf(typed, order, plan) {
   if (!who) {
     return null;
   }
-  const conditions = plan.explanations;
   return {
     ...who,
     order: orderOf(order, who.driver_id, plan),
-    explanation: conditions[(who.driver_id - 1) % conditions.length] ?? "text",
+    explanation: explanationOf(who.driver_id, plan),
   };
+}
+
+/**
+ * Both orders of a counterbalanced study occur equally often with each condition: two people with
+ * numbers in a row have the same one.
+ * @param {number} number
+ * @param {Plan} plan
+ * @returns {Explanation}
+ */
+function explanationOf(number, { explanations, counterbalanced }) {
+  const turn = counterbalanced ? Math.floor((number - 1) / 2) : number - 1;
+  return explanations[turn % explanations.length] ?? "text";
 }
 
 /**
