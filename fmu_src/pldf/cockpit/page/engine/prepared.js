@@ -17,7 +17,9 @@ import { crc32 } from "./crc32.js";
 const COLUMNS = 5;
 const BYTES = 8;
 const TAIL = 15; // "crc32 01234567\n"
-const HEADER_MAX = 1 << 24;
+const FIRST_LINE = 16;
+const LF = 10;
+const END = [..."end"].map((letter) => letter.charCodeAt(0));
 
 /** A file that is no prepared road, or a damaged one; `reason` in plain English for a message. */
 export class RoadFileError extends Error {}
@@ -45,14 +47,21 @@ export function readPrepared(bytes) {
 
 /** @param {Uint8Array} bytes @returns {{lines: string[], size: number}} up to the line "end" */
 function header(bytes) {
-  const text = new TextDecoder().decode(bytes.subarray(0, HEADER_MAX));
+  const size = headerSize(bytes);
+  const text = new TextDecoder().decode(bytes.subarray(0, size || FIRST_LINE));
   if (!/^PLDF-PREPARED [12]\n/.test(text)) {
     throw new RoadFileError("not a prepared road, or one of a newer release");
   }
-  const end = /\nend *\n/.exec(text);
-  if (!end) throw new RoadFileError("the file's header is cut off");
-  const whole = text.slice(0, end.index + end[0].length);
-  return { lines: whole.split("\n"), size: new TextEncoder().encode(whole).length };
+  if (!size) throw new RoadFileError("the file's header is cut off");
+  return { lines: text.split("\n"), size };
+}
+
+/** @param {Uint8Array} bytes @returns {number} with the line "end" and its spaces; 0: it has none */
+function headerSize(bytes) {
+  for (let at = bytes.indexOf(LF); at >= 0; at = bytes.indexOf(LF, at + 1)) {
+    if (END.every((byte, k) => bytes[at + 1 + k] === byte)) return bytes.indexOf(LF, at + 1) + 1;
+  }
+  return 0;
 }
 
 /** @param {string[]} lines @param {string} name @returns {string} */
@@ -84,11 +93,13 @@ function checkSum(bytes, body) {
  */
 function columns(bytes, start, rows) {
   const view = new DataView(bytes.buffer, bytes.byteOffset + start);
-  return Array.from({ length: COLUMNS }, (_, column) =>
-    Float64Array.from({ length: rows }, (_value, row) =>
-      view.getFloat64((column * rows + row) * BYTES, true),
-    ),
-  );
+  return Array.from({ length: COLUMNS }, (_, column) => {
+    const values = new Float64Array(rows);
+    for (let row = 0; row < rows; row++) {
+      values[row] = view.getFloat64((column * rows + row) * BYTES, true);
+    }
+    return values;
+  });
 }
 
 /** @param {string[]} lines @returns {Mark[]} */
