@@ -100,12 +100,13 @@ def test_another_address_and_another_study_are_told(fmu_folder: Path, tmp_path: 
 
 def test_it_writes_one_file(fmu_folder: Path, tmp_path: Path) -> None:
     path = tmp_path / "cockpit.html"
-    process = started(fmu_folder, "--export", str(path), "--language", "de")
+    process = started(fmu_folder, "--export", str(path), "--language", "de", "--fov", "95.5")
     out, err = process.communicate(timeout=120)
     assert process.returncode == 0, err
     assert f"{path}: " in out
     text = path.read_text(encoding="utf-8")
-    assert "Willkommen" in text
+    assert '"language":"de"' in text
+    assert '"fov_deg":95.5' in text
     assert '<script type="module">' in text
 
 
@@ -113,6 +114,8 @@ def test_it_writes_one_file(fmu_folder: Path, tmp_path: Path) -> None:
     ("arguments", "problem"),
     [
         (["--export", "x.html", "--out", "y"], "--out: an exported page keeps"),
+        (["--fov", "5"], "'5' is not a number from 20 to 150, in degrees"),
+        (["--fov", "wide"], "'wide' is not a number"),
         (["--language", "fr"], "invalid choice: 'fr'"),
     ],
 )

@@ -7,10 +7,12 @@ import socket
 import sys
 import webbrowser
 from contextlib import suppress
+from math import nan
 from pathlib import Path
 from typing import Final
 
 from ..cockpit.desk_study import DESK, LANGUAGES, DeskStudy, read_desk_study
+from ..study.study_tables import FOV_MAX_DEG, FOV_MIN_DEG
 from .shared.telling import tell
 
 EXAMPLE: Final = (
@@ -43,6 +45,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--language", choices=LANGUAGES, default="", help="of the page (default: STUDY.toml's)"
     )
     parser.add_argument(
+        "--fov", type=_field_of_view, metavar="DEG",
+        help="horizontal field of view of the screen: 2 atan(width / (2 distance)) (default: "
+        "STUDY.toml's)",
+    )  # fmt: skip
+    parser.add_argument(
         "--bind", metavar="ADDRESS", default="127.0.0.1",
         help="also let other machines in, for a cluster on a tablet: 0.0.0.0 or an address of this "
         "machine (default: this machine only)",
@@ -62,7 +69,10 @@ def run(options: argparse.Namespace) -> None:
 
     desk = read_desk_study(options.file)
     tell(desk.study.notes)
-    made = as_json(bundle(desk, options.language, _announce))
+    told = bundle(desk, options.language, _announce)
+    if options.fov is not None:
+        told["plan"]["fov_deg"] = options.fov
+    made = as_json(told)
     if options.export:
         from ..cockpit.export import write_export  # noqa: PLC0415
 
@@ -105,6 +115,18 @@ def _serve(options: argparse.Namespace, desk: DeskStudy, made: bytes) -> None:
             serve(cockpit, listening)
     if cockpit.folder.exists():
         print(f"Look at the result with: pldf analyse {cockpit.folder}")
+
+
+def _field_of_view(text: str) -> float:
+    try:
+        degrees = float(text)
+    except ValueError:
+        degrees = nan
+    if not FOV_MIN_DEG <= degrees <= FOV_MAX_DEG:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a number from {FOV_MIN_DEG:g} to {FOV_MAX_DEG:g}, in degrees"
+        )
+    return degrees
 
 
 def _announce(what: str) -> None:

@@ -21,6 +21,8 @@ STEP_MAX_S: Final = 0.1
 LIMIT_MAX_MPS: Final = 300.0 / KMH_PER_MPS
 
 PRACTICE_MAX: Final = 9
+FOV_MIN_DEG: Final = 20.0
+FOV_MAX_DEG: Final = 150.0
 
 PhaseName = Literal["A1", "A2", "A3", "B1", "B2", "B3"]
 Text = Annotated[str, Meta(pattern=r"\S", description="a text in quotes")]
@@ -62,7 +64,12 @@ Practice = Annotated[
 ]
 PracticeEnd = Annotated[float, Meta(ge=100.0, description="a number from 100, in m")]
 FieldOfView = Annotated[
-    float, Meta(ge=20.0, le=150.0, description="a number from 20 to 150, in degrees")
+    float,
+    Meta(
+        ge=FOV_MIN_DEG,
+        le=FOV_MAX_DEG,
+        description=f"a number from {FOV_MIN_DEG:g} to {FOV_MAX_DEG:g}, in degrees",
+    ),
 ]
 
 
