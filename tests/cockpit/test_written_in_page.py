@@ -28,7 +28,7 @@ def bits_of(values: FloatArray) -> str:
     return values.astype("<f8").tobytes().hex()
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_numbers_are_written_as_python_writes_them(seed: int) -> None:
     random = np.random.default_rng(seed)
@@ -55,7 +55,7 @@ def test_the_columns_are_those_of_python() -> None:
 
 
 @given(seed=st.integers(0, 2**32 - 1), count=st.integers(0, ROWS))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=6, deadline=None)
 def test_a_recording_is_the_same_file(seed: int, count: int) -> None:
     random = np.random.default_rng(seed)
     columns = {}
