@@ -14,7 +14,8 @@ import { fromJson, toJson } from "./saved.js";
  */
 
 const KEY = "pldf-cockpit settings";
-export const FOV_DEG = { low: 40, high: 120 };
+/** As in study files. */
+export const FOV_DEG = { low: 20, high: 150 };
 
 /**
  * Return the settings kept in this browser, and the plan's where there are none.
