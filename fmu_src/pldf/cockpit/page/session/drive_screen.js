@@ -7,6 +7,7 @@ import { FRAME_MS } from "../cluster/live.js";
 import { DriveClient } from "../engine/client.js";
 import { Interpolation } from "../engine/interpolation.js";
 import { button } from "./app.js";
+import { keysTable } from "./keys_table.js";
 import { FrameTimes } from "./frame_times.js";
 import { PauseDialog } from "./pause_dialog.js";
 import { Scene } from "./scene.js";
@@ -30,6 +31,7 @@ import { say } from "./drive_words.js";
  * @property {string} participant empty: nobody else is told
  * @property {string} phase
  * @property {boolean} teaches the driver's last word is offered
+ * @property {boolean} shows_keys which key does what is shown for the first seconds
  * @property {(stop: (reason: string) => void) => void} [stoppable]
  * @property {(state: "driving" | "paused", reason: string) => void} [tell]
  */
@@ -37,6 +39,7 @@ import { say } from "./drive_words.js";
 // The pedals are read more often than pictures come: a slow picture is no slow foot.
 const INPUT_MS = 10;
 const COUNTDOWN_S = 3;
+const KEYS_SHOWN_S = 12;
 
 /**
  * Drive a drive; the promise resolves when it has ended, however it has.
@@ -61,6 +64,7 @@ class DriveScreen {
     this.times = new FrameTimes();
     this.paused = true;
     this.told_ms = -Infinity;
+    this.keysSeen = false;
     const cluster = element("div", { class: "drive-cluster" });
     const words = element("div", { class: "drive-words" });
     this.count = element("p", { class: "drive-count", "aria-live": "assertive" });
@@ -71,10 +75,14 @@ class DriveScreen {
       app,
       changed: () => this.scene.set(app.settings),
     });
+    const steered = options.setup.steering === "person";
+    const keys = element("div", { class: "drive-keys" }, keysTable(steered));
+    this.keys = keys;
+    this.keys.hidden = !options.shows_keys;
     const bottom = element("div", { class: "drive-bottom" }, cluster, words);
-    const screen = element("div", { class: "drive" }, this.canvas, this.top(), this.count, bottom);
-    screen.append(this.dialog.root);
-    fill(app.root, screen);
+    const shown = [this.canvas, this.top(), keys, this.count, bottom, this.dialog.root];
+    this.root = element("div", { class: "drive", tabindex: -1 }, ...shown);
+    fill(app.root, this.root);
     this.scene = new Scene(this.canvas, app.road, app.settings);
     const unit = app.settings.unit === "mph" ? "MPH" : "KMH";
     this.cluster = new Cluster(cluster, app.bundle.texts, { explanation: options.explanation, unit });
@@ -87,9 +95,15 @@ class DriveScreen {
       "div",
       { class: "drive-top" },
       element("h1", {}, this.options.title),
+      this.options.inputs && button(say("keys_title"), () => this.toggleKeys()),
       button(say("pause"), () => this.client.pause("asked for by the person")),
       button(say("stop"), ask, "stop"),
     );
+  }
+
+  toggleKeys() {
+    this.keys.hidden = !this.keys.hidden;
+    this.root.focus(); // the next key is meant for the car
   }
 
   /**
@@ -178,6 +192,10 @@ class DriveScreen {
   take(frame) {
     const now_ms = performance.now();
     this.between.push(frame, now_ms);
+    if (this.options.shows_keys && frame.time_s > KEYS_SHOWN_S && !this.keysSeen) {
+      this.keysSeen = true;
+      this.keys.hidden = true;
+    }
     if (now_ms - this.told_ms >= FRAME_MS && this.options.participant) {
       this.told_ms = now_ms;
       const { participant, phase } = this.options;
@@ -215,6 +233,7 @@ class DriveScreen {
 
   /** Count down and go on: hands and feet want to be in their places. */
   resume() {
+    this.root.focus();
     return new Promise((resolve) => {
       const count = (/** @type {number} */ left_s) => {
         fill(this.count, left_s > 0 ? left_s : "");

@@ -106,6 +106,7 @@ async function series(app, back, inputs, learned) {
         participant: "",
         phase: "",
         teaches: true,
+        shows_keys: inputs !== null,
       });
       await learned.write(result.profiles);
       next = await afterwards(app, setup, result, learned);

@@ -88,6 +88,9 @@ export class Session {
     };
     const record = found ?? newRecord(who, about, "welcome", now());
     const session = new Session(app, record);
+    if (record.study !== plan.title || !session.steps.some(({ id }) => id === record.step)) {
+      throw new Error(say("study_changed", { study: record.study, step: record.step }));
+    }
     if (found) {
       await patiently(app, (storage) => publishProfiles(storage, record));
       session.record = noted(record, "opened again", now());
@@ -168,7 +171,7 @@ export class Session {
     const declined = this.step.kind === "consent";
     const text = declined ? say("declined") : say("stopped_text");
     const reason = this.record.stopped?.reason;
-    await choose(
+    const choice = await choose(
       this.app,
       say(declined ? "thanks_title" : "stopped_title"),
       [
@@ -176,8 +179,15 @@ export class Session {
         reason ? element("p", {}, say("ended_early_why", { reason })) : null,
         declined ? null : element("p", {}, say("unwell")),
       ],
-      [{ text: say(declined ? "back" : "stopped_go_on"), choice: "go_on" }],
+      [
+        { text: say(declined ? "back" : "stopped_go_on"), choice: "go_on" },
+        { text: say("home"), choice: "home" },
+      ],
     );
+    if (choice === "home") {
+      location.assign(location.pathname);
+      await new Promise(() => {}); // the page is left
+    }
     await this.go("go_on", "");
   }
 

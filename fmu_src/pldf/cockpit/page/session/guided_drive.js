@@ -149,8 +149,9 @@ async function setupOf({ app, step, record }, inputs) {
 async function driveNow(session, setup, inputs) {
   const { app, record, step } = session;
   const practice = step.kind === "practice";
-  const settings = { ...app.settings, fov_deg: app.bundle.plan.fov_deg };
-  const driven = await drive({ ...app, settings }, {
+  // What is changed while driving stays; the field of view is the plan's.
+  app.settings.fov_deg = app.bundle.plan.fov_deg;
+  const driven = await drive(app, {
     setup,
     inputs,
     explanation: record.explanation,
@@ -158,6 +159,7 @@ async function driveNow(session, setup, inputs) {
     participant: record.participant,
     phase: practice ? "" : step.name,
     teaches: !practice && planned(app.bundle, step.name).learn,
+    shows_keys: practice,
     stoppable: (stop) => {
       session.stopDrive = stop;
     },

@@ -124,6 +124,7 @@ async function thanks(session) {
   const { app } = session;
   const zip =
     app.storage.kind !== "server" && button(say("hand_out"), () => void handOut(app.storage));
+  const away = button(say("home"), () => location.assign(location.pathname));
   const panel = element("div", {});
   const see = button(say("see_learned"), () => {
     see.remove();
@@ -135,7 +136,7 @@ async function thanks(session) {
     laboratoryText(app.bundle.pages.thanks),
     element("p", {}, say("finished")),
     zip && element("p", {}, say("hand_out_hint")),
-    buttons(zip, session.record.learned_after && see),
+    buttons(zip, session.record.learned_after && see, away),
     panel,
   ).classList.add("wide");
   return new Promise(() => {}); // the last step has no end

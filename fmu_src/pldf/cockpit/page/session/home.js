@@ -3,6 +3,7 @@
 import { element, fill } from "../dom.js";
 import { language } from "../language.js";
 import { button, showPage } from "./app.js";
+import { chooseDevice } from "./device_screen.js";
 import { demonstrate, driveFreely } from "./free.js";
 import { handOut } from "./hand_out.js";
 import { otherWithNumber } from "./keeping.js";
@@ -45,7 +46,11 @@ export function home(app) {
         button(say("simulation_start"), () => void simulate(app, back)),
       ),
       replayCard(app, back),
-      card("settings", settingsForm(app.settings, { study: false })),
+      card(
+        "settings",
+        settingsForm(app.settings, { study: false }),
+        button(say("set_up_device"), () => void chooseDevice(app).then(back)),
+      ),
       server ? windows() : data(app),
     ),
   );

@@ -65,7 +65,11 @@ export class PauseDialog {
       this.asksWhy = true;
       this.open("", this.inputs ?? null);
     };
-    const settings = settingsForm(this.app.settings, { study: true, changed: this.changed });
+    const settings = settingsForm(this.app.settings, {
+      study: true,
+      driving: true,
+      changed: this.changed,
+    });
     return element(
       "div",
       {},

@@ -28,6 +28,7 @@ export class Scene {
    */
   set(settings) {
     this.view.options.mirror = settings.mirror;
+    this.view.options.reducedMotion = reducedMotion(settings);
     this.view.camera = settings.camera;
     if (settings.sound !== (this.sound !== null)) {
       this.sound?.dispose();

@@ -9,10 +9,13 @@ import { say } from "./drive_words.js";
 /**
  * Return a form that changes `settings` and keeps them in this browser.
  * @param {Settings} settings
- * @param {{study: boolean, changed?: () => void}} how in a study, steering and field of view are the plan's
+ * @param {object} how
+ * @param {boolean} how.study steering and field of view are the plan's
+ * @param {boolean} [how.driving] the unit is that of the drive that goes on
+ * @param {() => void} [how.changed]
  * @returns {HTMLElement}
  */
-export function settingsForm(settings, { study, changed = () => {} }) {
+export function settingsForm(settings, { study, driving = false, changed = () => {} }) {
   const kept = () => {
     saveSettings(settings);
     changed();
@@ -55,10 +58,11 @@ export function settingsForm(settings, { study, changed = () => {} }) {
       ["cockpit", say("camera_cockpit")],
       ["chase", say("camera_chase")],
     ]),
-    choice("unit", say("unit"), [
-      ["kmh", "km/h"],
-      ["mph", "mph"],
-    ]),
+    !driving &&
+      choice("unit", say("unit"), [
+        ["kmh", "km/h"],
+        ["mph", "mph"],
+      ]),
     !study &&
       choice("steering", say("steering"), [
         ["assisted", say("steering_assisted")],

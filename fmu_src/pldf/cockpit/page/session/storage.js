@@ -103,6 +103,8 @@ async function accepted(response) {
  */
 export async function browserStorage() {
   const base = await settled(openBase());
+  // Else a browser that is short of space may clear it; where it asks, the person decides.
+  void navigator.storage?.persist?.();
   /** @param {IDBTransactionMode} mode */
   const files = (mode) => base.transaction(FILES, mode, { durability: "strict" }).objectStore(FILES);
   /** @type {Storage["read"]} */
