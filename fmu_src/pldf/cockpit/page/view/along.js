@@ -1,5 +1,5 @@
-// What stands beside the road at regular places: posts, rails, railings, lamps.
-import { KERB_M, PARAPET_M, beyondEdge } from "./profile.js";
+// What stands beside the road at regular places: posts, rails, lamps.
+import { KERB_M, beyondEdge } from "./profile.js";
 
 /** @typedef {import("../engine/road.js").RoadModel} RoadModel */
 /** @typedef {import("./mesh.js").MeshBuilder} MeshBuilder */
@@ -10,7 +10,6 @@ import { KERB_M, PARAPET_M, beyondEdge } from "./profile.js";
 
 const WHITE = 0xf2f2ee;
 const STEEL = 0xaab0b4;
-const CONCRETE = 0xb9b6ae;
 
 /**
  * Stand at a place beside the road.
@@ -69,26 +68,6 @@ export function guardRail(site, from_m, to_m, left) {
 }
 
 /**
- * Parapet with a hand rail, on both sides of a bridge, and the deck's side.
- * @param {Site} site
- * @param {number} from_m
- * @param {number} to_m
- */
-export function railing(site, from_m, to_m) {
-  for (const left of [true, false]) {
-    const at_m = beyondEdge(site.section, left, 1.3);
-    const step_m = site.detail ? 2.5 : 10;
-    for (let s_m = from_m; s_m < to_m; s_m += step_m) {
-      const next = Math.min(s_m + step_m, to_m);
-      standAt(site, s_m, at_m, KERB_M).box([-0.04, -0.04, 0], [0.04, 0.04, PARAPET_M], 0x5d7f8c);
-      for (const up of site.detail ? [0.35, 0.65, 0.95] : [0.95])
-        band(site, s_m, next, at_m, [up, up + 0.07], 0x6f93a0, 1);
-    }
-    band(site, from_m, to_m, at_m + (left ? 0.2 : -0.2), [-1.4, KERB_M + 0.12], CONCRETE, 1);
-  }
-}
-
-/**
  * An upright band, seen from both sides.
  * @param {Site} site
  * @param {number} from_m
@@ -98,7 +77,7 @@ export function railing(site, from_m, to_m) {
  * @param {number} hex
  * @param {number} shade
  */
-function band({ road, solid }, from_m, to_m, left_m, [low, high], hex, shade) {
+export function band({ road, solid }, from_m, to_m, left_m, [low, high], hex, shade) {
   const [a, b] = [road.at(from_m, left_m), road.at(to_m, left_m)];
   solid.stand({ x_m: 0, y_m: 0, z_m: 0, heading_rad: 0 });
   /** @type {import("./mesh.js").Point[]} */
@@ -121,11 +100,4 @@ export function lamp(site, s_m, left) {
   solid.box([-0.04, low, 5.9], [0.04, high, 5.98], 0x59636a);
   const [near, far] = [0.9 * inward, 1.6 * inward].sort((a, b) => a - b);
   solid.box([-0.14, near, 5.84], [0.14, far, 6], 0xdfe3e4);
-}
-
-/** Piers under a bridge. @param {Site} site @param {number} s_m @param {number} depth_m */
-export function pier(site, s_m, depth_m) {
-  const solid = standAt(site, s_m, (site.section.left_m - site.section.right_m) / 2, -1.4);
-  const half = (site.section.left_m + site.section.right_m) / 2 - 1;
-  solid.box([-0.7, -half, -depth_m], [0.7, half, 0], CONCRETE);
 }

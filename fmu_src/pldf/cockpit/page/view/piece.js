@@ -1,7 +1,7 @@
 // A piece of the road with all that stands beside it.
 import { Group } from "../vendor/three.js";
-import { guardRail, lamp, pier, railing, reflectorPosts, standAt } from "./along.js";
-import { RIVER_BELOW_M, riverBend } from "./ground.js";
+import { guardRail, lamp, reflectorPosts, standAt } from "./along.js";
+import { bridges } from "./bridge.js";
 import { paintLines } from "./lines.js";
 import { MeshBuilder } from "./mesh.js";
 import { KERB_M, PAVEMENT_M, beyondEdge } from "./profile.js";
@@ -36,12 +36,14 @@ const PAVING = 0xb4b2ac;
 const KERB = 0xd2d0c8;
 const DECK = 0xa8a69f;
 const SOLID_LINE_PER_M = 1 / 500; // no overtaking in such a curve
-const WATER = 0x7fa9bf;
+const DECK_SIDE_M = 1.5;
+const SIGN_OUT_M = 1.6; // beyond the asphalt
+const TOWN_SIGN_OUT_M = 3.2;
+const BOARD_OUT_M = 2;
 
 /** @param {Kit} kit @param {number} k which piece @param {import("./plants.js").Detail} detail */
 export function piece(kit, k, detail) {
-  const { road, section } = kit;
-  const { ground } = kit;
+  const { road, section, ground } = kit;
   const [from_m, to_m] = [
     Math.max(k * PIECE_M, ground.from_m),
     Math.min((k + 1) * PIECE_M, ground.to_m),
@@ -55,7 +57,7 @@ export function piece(kit, k, detail) {
   const put = (/** @type {Mesh | null} */ mesh) => mesh && group.add(mesh);
   surface(kit, solid, from_m, to_m).forEach(put);
   furniture(kit, site, from_m, to_m).forEach(put);
-  bridges(kit, site, from_m, to_m);
+  bridges(site, from_m, to_m);
   const middle = road.at((from_m + to_m) / 2);
   const height = ground.around(middle.x_m, middle.y_m, PIECE_M);
   grow({ site, height, detail }, from_m, to_m);
@@ -76,7 +78,7 @@ function surface(kit, solid, from_m, to_m) {
     const middle = (cuts[k - 1] + cuts[k]) / 2;
     asphalt.add(places, left, right, 0xe4e6ea, (s) => s / ASPHALT_M);
     paintLines(solid, road, section, markingAt(road, middle), cuts[k - 1], cuts[k]);
-    if (road.stretchAt("bridge", middle)) pavement(paving, kit, places, 1.5, DECK);
+    if (road.stretchAt("bridge", middle)) pavement(paving, kit, places, DECK_SIDE_M, DECK);
     else if (road.stretchAt("village", middle)) {
       pavement(paving, kit, places, PAVEMENT_M, PAVING);
       verges(grass, kit, places, PAVEMENT_M, KERB_M);
@@ -171,43 +173,12 @@ function furniture({ furniture: plan, road, section }, site, from_m, to_m) {
     if (road.stretchAt("village", s_m)) lamp(site, s_m, left);
   }
   const signs = plan.signs.filter(here).map((sign) => {
-    const out = sign.kind.startsWith("town") ? 3.2 : 1.6;
+    const out = sign.kind.startsWith("town") ? TOWN_SIGN_OUT_M : SIGN_OUT_M;
     return putUp(standAt(site, sign.s_m, beyondEdge(section, driven, out)), sign);
   });
   const boards = plan.boards.filter(here).map((board) => {
-    const solid = standAt(site, board.s_m, beyondEdge(section, board.left, 2), -0.1);
+    const solid = standAt(site, board.s_m, beyondEdge(section, board.left, BOARD_OUT_M), -0.1);
     return putUpBoard(solid, board.to_left);
   });
   return [...signs, ...boards];
-}
-
-/** @param {Kit} kit @param {Site} site @param {number} from_m @param {number} to_m */
-function bridges({ road }, site, from_m, to_m) {
-  for (const bridge of road.stretches.filter((each) => each.kind === "bridge")) {
-    const [begin, end] = [Math.max(bridge.from_m, from_m), Math.min(bridge.to_m, to_m)];
-    if (begin >= end) continue;
-    railing(site, begin, end);
-    const first = Math.ceil((begin - bridge.from_m - 20) / 36) * 36 + bridge.from_m + 20;
-    for (let s_m = first; s_m < end; s_m += 36) pier(site, s_m, 16);
-    const middle = (bridge.from_m + bridge.to_m) / 2;
-    if (middle >= begin && middle < end) river(road, site, middle);
-  }
-}
-
-/** @param {RoadModel} road @param {Site} site @param {number} s_m */
-function river(road, site, s_m) {
-  const solid = site.solid.stand(road.at(s_m));
-  const z_m = -RIVER_BELOW_M;
-  for (let across = -400; across < 400; across += 20) {
-    const [near, far] = [-riverBend(across), -riverBend(across + 20)];
-    solid.face(
-      [
-        [near - 14, across, z_m],
-        [near + 14, across, z_m],
-        [far + 14, across + 20, z_m],
-        [far - 14, across + 20, z_m],
-      ],
-      WATER,
-    );
-  }
 }
