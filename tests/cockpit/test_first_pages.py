@@ -73,9 +73,12 @@ def is_readable(window: Chrome) -> bool:
 
 
 def moved(window: Chrome, axis: int, value: float) -> None:
-    """Move an axis of the wheel, and let a picture pass."""
+    """Move an axis of the wheel, and let the page look at it."""
     window.execute_script("window.wheel.axes[arguments[0]] = arguments[1]", axis, value)
-    window.execute_async_script("const done = arguments[0]; setTimeout(done, 80)")
+    window.execute_async_script(
+        "const done = arguments[0];"
+        "requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))"
+    )
 
 
 def question(window: Chrome) -> str:
