@@ -120,6 +120,8 @@ def test_a_person_drives_in_real_time(window: webdriver.Chrome) -> None:
         "document.dispatchEvent(new Event('visibilitychange'))"
     )
     wait(window, "seen.paused.at(-1) === 'hidden'")
+    window.execute_script("client.pause('once more')")  # the page counts down and is held
+    wait(window, "seen.paused.at(-1) === 'once more'")
     window.execute_script("client.stop('enough')")
     result = wait(window, "seen.result")
     assert (result["ending"], result["reason"]) == ("stopped", "enough")

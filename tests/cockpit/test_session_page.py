@@ -94,6 +94,12 @@ def test_a_reload_and_a_stop_lose_nothing(address: str, window: Chrome, folder: 
     at(window, "The drive ended early")
     press(window, "Drive it again")
     start(window)
+    for _ in range(2):  # the second time while it counts down
+        press(window, "Pause")
+        wait(window, "!!document.querySelector('dialog[open]')")
+        window.execute_script("document.querySelector('dialog').close()")  # nobody need know why
+        wait(window, "!!document.querySelector('dialog[open]')")
+        press(window, "Go on driving")
     press(window, "Stop")
     press(window, "I feel unwell")
     at(window, "The drive ended early")

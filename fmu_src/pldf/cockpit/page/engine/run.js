@@ -55,18 +55,16 @@ export class Run {
   }
 
   /**
-   * Let the drive stand.
+   * Let the drive stand; one that stands already, and not only because it has not begun, keeps its reason.
    * @param {string} reason
    * @param {number} [since_ms] it stands since then
-   * @returns {boolean} false: it stood already, and not only because it has not begun
    */
   pause(reason, since_ms = this.clock_ms()) {
     if (this.paused !== null && this.paused.reason !== READY) {
-      return false;
+      return;
     }
     this.paused = { reason, since_ms };
     this.drive.person?.release();
-    return true;
   }
 
   /** Let the drive go on, or begin. */

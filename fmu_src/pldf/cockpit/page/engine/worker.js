@@ -102,9 +102,10 @@ function leave(result) {
   say({ kind: "ended", result });
 }
 
-/** @param {string} reason */
+/** @param {string} reason told even if the drive stands already: the page may be about to go on */
 function pause(reason) {
-  if (run?.pause(reason)) {
+  if (run !== null) {
+    run.pause(reason);
     say({ kind: "paused", reason });
   }
 }

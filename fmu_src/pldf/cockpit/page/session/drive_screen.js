@@ -171,7 +171,7 @@ class DriveScreen {
 
   /** @param {KeyboardEvent} event */
   key(event) {
-    if (event.key === "Escape" && !this.paused) {
+    if (event.key === "Escape" && !this.dialog.root.open) {
       event.preventDefault();
       this.client.pause("asked for by the person");
     }

@@ -32,11 +32,14 @@ export class PauseDialog {
     this.app = app;
     this.changed = changed;
     this.asksWhy = false;
+    this.stands = false;
     this.root = /** @type {HTMLDialogElement} */ (element("dialog", { class: "pause" }));
     this.root.addEventListener("cancel", (event) => {
       event.preventDefault();
       this.goOn();
     });
+    // Browsers may close it although that was prevented; as long as the drive stands, it is there.
+    this.root.addEventListener("close", () => this.stands && this.root.showModal());
   }
 
   /**
@@ -45,6 +48,7 @@ export class PauseDialog {
    */
   open(reason, inputs) {
     this.inputs = inputs;
+    this.stands = true;
     this.told = element("p", {}, pauseText(reason, inputs?.name ?? ""));
     const why = this.asksWhy;
     fill(
@@ -108,6 +112,7 @@ export class PauseDialog {
 
   close() {
     this.asksWhy = false;
+    this.stands = false;
     this.root.close();
   }
 }
