@@ -9,6 +9,7 @@ import { Interpolation } from "../engine/interpolation.js";
 import { button } from "./app.js";
 import { keysTable } from "./keys_table.js";
 import { FrameTimes } from "./frame_times.js";
+import { Pedals } from "./pedals.js";
 import { PauseDialog } from "./pause_dialog.js";
 import { Scene } from "./scene.js";
 import { say } from "./drive_words.js";
@@ -80,7 +81,10 @@ class DriveScreen {
     this.keys = keys;
     this.keys.hidden = !options.shows_keys;
     const bottom = element("div", { class: "drive-bottom" }, cluster, words);
-    const shown = [this.canvas, this.top(), keys, this.count, bottom, this.dialog.root];
+    /** @type {Pedals | null} what is done by somebody else */
+    this.pedals = options.inputs ? null : new Pedals();
+    const beside = this.pedals?.root ?? keys;
+    const shown = [this.canvas, this.top(), beside, this.count, bottom, this.dialog.root];
     this.root = element("div", { class: "drive", tabindex: -1 }, ...shown);
     fill(app.root, this.root);
     this.scene = new Scene(this.canvas, app.road, app.settings);
@@ -212,6 +216,7 @@ class DriveScreen {
       this.scene.draw(frame, this.paused);
       this.cluster.show(frame.values);
       this.buttons?.show(frame.values);
+      this.pedals?.show(frame);
     }
     if (!this.paused) {
       this.times.drawn(now_ms);

@@ -6,6 +6,7 @@ import { speedText, unitText } from "../cluster/units.js";
 import { button } from "./app.js";
 import { comparePlot } from "./compare_plot.js";
 import { ByDistance } from "./comparing.js";
+import { Pedals } from "./pedals.js";
 import { Scene } from "./scene.js";
 import { say } from "./replay_words.js";
 
@@ -53,6 +54,7 @@ class ReplayScreen {
     this.time_s = 0;
     this.last_ms = NaN;
     this.now = watched[0];
+    this.pedals = new Pedals();
     this.leave = () => {
       this.close();
       back();
@@ -86,7 +88,7 @@ class ReplayScreen {
     });
     const bottom = element("div", { class: "drive-bottom" }, dashboard);
     return [
-      element("div", { class: "replay-scene" }, this.canvas, bottom),
+      element("div", { class: "replay-scene" }, this.canvas, this.pedals.root, bottom),
       this.bar(back),
       this.compared,
     ];
@@ -178,6 +180,7 @@ class ReplayScreen {
     const frame = now.replay.at(this.time_s);
     this.scene?.draw(frame, !this.playing);
     this.cluster?.show(frame.values);
+    this.pedals.show(frame);
     this.compare(frame);
   }
 
