@@ -20,8 +20,10 @@ _OVER = """(() => {
 
 
 def at(window: Chrome, text: str) -> None:
-    """Wait for the page with this heading."""
-    shown = f"(document.querySelector('h1')?.textContent ?? '').includes({text!r})"
+    """Wait for the page with this heading, of the page or of the laboratory's text."""
+    shown = (
+        f"[...document.querySelectorAll('h1')].some((one) => one.textContent.includes({text!r}))"
+    )
     wait(window, shown, PATIENCE_S)
 
 

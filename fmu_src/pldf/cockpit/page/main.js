@@ -70,6 +70,11 @@ function told(problem) {
   document.body.append(element("p", { class: "banner", role: "alert" }, words));
 }
 
-addEventListener("error", (event) => told(event.error ?? event.message));
+addEventListener("error", ({ error, message }) => {
+  // A browser's notice that something grew while it was measured: it is drawn a frame later.
+  if (!message.startsWith("ResizeObserver loop")) {
+    told(error ?? message);
+  }
+});
 addEventListener("unhandledrejection", (event) => told(event.reason));
 start().catch((problem) => showProblem(root, problem));

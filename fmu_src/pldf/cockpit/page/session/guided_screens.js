@@ -132,7 +132,7 @@ async function thanks(session) {
   });
   showPage(
     app,
-    say("thanks_title"),
+    app.bundle.plan.title,
     laboratoryText(app.bundle.pages.thanks),
     element("p", {}, say("finished")),
     zip && element("p", {}, say("hand_out_hint")),
