@@ -61,6 +61,9 @@ def test_a_whole_session_leaves_what_the_analysis_reads(
             answer(window, questionnaire["title"]["en"], HOSTILE)
         if phase == "A2":
             at(window, "A short break")
+            press(window, "End the session")
+            press(window, "Go on where it was stopped")
+            at(window, "A short break")
             press(window, "Continue")
     at(window, "Thank you")
     press(window, "See what the car learned from you")
@@ -83,6 +86,9 @@ def test_a_whole_session_leaves_what_the_analysis_reads(
 
 
 def test_a_reload_and_a_stop_lose_nothing(address: str, window: Chrome, folder: Path) -> None:
+    window.get(address)
+    by_another = "JSON.stringify({camera: 'chase', sound: false})"
+    window.execute_script(f"localStorage.setItem('pldf-cockpit settings', {by_another})")
     to_first_drive(window, address, "P02")
     start(window)
     pedal(window, 0.3)
@@ -110,6 +116,8 @@ def test_a_reload_and_a_stop_lose_nothing(address: str, window: Chrome, folder: 
     at(window, "Drive 1 of 2")
     told = [(one["ending"], one["reason"]) for one in record(folder, "P02")["attempts"]]
     assert told == [("cut off", ""), ("stopped", "fire drill"), ("stopped", "felt unwell")]
+    shown = record(folder, "P02")["attempts"][-1]["shown"]
+    assert (shown["camera"], shown["sound"], shown["fov_deg"]) == ("cockpit", True, 60.0)
     assert not list(folder.glob("recordings/P02*"))
     assert not list(folder.glob("profiles/driver-000002*"))
     kept = sorted(path.name for path in (folder / "sessions/P02/stopped").iterdir())

@@ -8,6 +8,7 @@ import { element } from "../dom.js";
 import { keepRecord, learnedFiles, otherWithNumber, publishProfiles, readRecord } from "./keeping.js";
 import { newRecord, noted } from "./record.js";
 import { patiently } from "./patiently.js";
+import { readSettings } from "./settings.js";
 import { screenOf } from "./guided_screens.js";
 import { language } from "../language.js";
 import { say } from "./words.js";
@@ -32,7 +33,8 @@ export async function guide(app, who) {
     showPage(app, other ? say("pseudonym_taken", { other }) : say("other_tab"));
     return;
   }
-  const session = await Session.open(app, who);
+  const settings = readSettings(app.bundle.plan, who.name);
+  const session = await Session.open({ ...app, settings }, who);
   await session.run();
 }
 

@@ -13,8 +13,9 @@ import { language } from "../language.js";
 import { patiently } from "./patiently.js";
 import { progress } from "./progress.js";
 import { driveSetup, planned, practiceSetup } from "./setup.js";
+import { shownBy } from "./settings.js";
 import { settingsForm } from "./settings_form.js";
-import { withAttempt, withEnding } from "./record.js";
+import { ASKED_FOR, withAttempt, withEnding } from "./record.js";
 import { say } from "./words.js";
 import { say as sayDrive } from "./drive_words.js";
 
@@ -33,7 +34,11 @@ import { say as sayDrive } from "./drive_words.js";
 export async function driveStep(session) {
   const inputs = session.inputs ?? (await rememberedInputs(session));
   session.inputs = inputs;
-  if ((await introduced(session)) === "device") {
+  const choice = await introduced(session);
+  if (choice === "stop") {
+    return { event: "stop", reason: ASKED_FOR };
+  }
+  if (choice === "device") {
     session.inputs = null;
     inputs.keyboard.dispose();
     session.inputs = await chooseDevice(session.app);
@@ -105,6 +110,7 @@ function introduced(session) {
     [
       { text: say("start_drive"), choice: /** @type {const} */ ("start"), kind: "main" },
       { text: sayDrive("change_device"), choice: /** @type {const} */ ("device") },
+      { text: say("end_session"), choice: /** @type {const} */ ("stop") },
     ],
   );
 }
@@ -189,6 +195,7 @@ async function stored(session, { result, frames }) {
     interruptions: result.interruptions,
     timing: result.timing,
     frames,
+    shown: shownBy(app.settings),
   };
   session.record = await patiently(app, async (storage) => {
     const file = await keepDrive(storage, record, attempt, result);

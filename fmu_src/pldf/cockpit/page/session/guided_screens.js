@@ -7,7 +7,7 @@ import { chooseDevice } from "./device_screen.js";
 import { driveStep } from "./guided_drive.js";
 import { handOut } from "./hand_out.js";
 import { fromJson, toJson } from "./saved.js";
-import { noted, withAnswers } from "./record.js";
+import { ASKED_FOR, noted, withAnswers } from "./record.js";
 import { progress } from "./progress.js";
 import { learnedPanel } from "./see_learned.js";
 import { say } from "./words.js";
@@ -93,22 +93,24 @@ function rest(session) {
   const ends_ms = Date.now() + session.step.minutes * 60_000;
   return new Promise((resolve) => {
     const left = element("p", { class: "countdown", role: "timer" });
-    const next = button(say("next"), () => over(), "main");
+    const next = button(say("next"), () => over("rested"), "main");
+    const stop = button(say("end_session"), () => over("stop"));
     const text = element("p", {}, say("break_text"));
-    showPage(session.app, say("break_title"), progress(session), text, left, buttons(next));
+    showPage(session.app, say("break_title"), progress(session), text, left, buttons(next, stop));
     const timer = setInterval(() => tick(), 500);
     const tick = () => {
       const left_s = Math.ceil((ends_ms - Date.now()) / 1000);
       fill(left, left_s > 0 ? say("break_left", clock(left_s)) : say("break_over"));
     };
-    const over = () => {
+    const over = (/** @type {"rested" | "stop"} */ event) => {
       next.disabled = true; // a second click must not end what comes next
+      stop.disabled = true;
       clearInterval(timer);
       const left_s = Math.round((ends_ms - Date.now()) / 1000);
-      if (left_s > 0) {
+      if (left_s > 0 && event === "rested") {
         session.record = noted(session.record, `break ended ${left_s} s early`, now());
       }
-      resolve({ event: "rested", reason: "" });
+      resolve({ event, reason: event === "stop" ? ASKED_FOR : "" });
     };
     tick();
   });

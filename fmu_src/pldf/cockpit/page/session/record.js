@@ -5,6 +5,7 @@
 /** @typedef {import("../types.js").Interruption} Interruption */
 /** @typedef {import("../language.js").Language} Language */
 /** @typedef {import("./participant.js").Participant} Participant */
+/** @typedef {import("./settings.js").Shown} Shown */
 /** @typedef {string | number} Answer key of a choice, box of a scale, number, text */
 /** @typedef {Record<string, Answer>} Answers by id of the item; what was not answered is not there */
 
@@ -32,6 +33,7 @@
  * @property {Interruption[]} interruptions
  * @property {DriveResult["timing"] | null} timing of the steps
  * @property {FrameTiming | null} frames
+ * @property {Shown | null} shown picture and sound, as they were set at the end
  */
 /** @typedef {{at: string, what: string, step: string}} Note what happened beside the plan */
 
@@ -56,6 +58,9 @@
  * @property {Attempt[]} attempts in the order of driving
  * @property {Note[]} notes
  */
+
+/** Why a session stops that a person ends between two drives. */
+export const ASKED_FOR = "asked for by the person";
 
 /**
  * @param {Participant} who
@@ -136,6 +141,7 @@ export function withAttempt(record, begun) {
     interruptions: [],
     timing: null,
     frames: null,
+    shown: null,
   });
   return { ...record, attempts: [...record.attempts, attempt] };
 }

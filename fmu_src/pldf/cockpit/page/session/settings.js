@@ -1,4 +1,4 @@
-// What the person sets for the page: kept in this browser.
+// What the person sets for the page: kept in this browser, for visitors and for each participant.
 
 import { fromJson, toJson } from "./saved.js";
 
@@ -11,6 +11,11 @@ import { fromJson, toJson } from "./saved.js";
  * @property {"assisted" | "person"} steering
  * @property {number} fov_deg horizontal field of view
  * @property {"auto" | "less"} motion auto: as the system is set
+ * @property {string} whose participant; empty: whoever visits
+ */
+/**
+ * What a person sees and hears, as it is kept with a drive.
+ * @typedef {Pick<Settings, "camera" | "sound" | "mirror" | "unit" | "fov_deg"> & {reduced_motion: boolean}} Shown
  */
 
 const KEY = "pldf-cockpit settings";
@@ -19,10 +24,13 @@ export const FOV_DEG = { low: 20, high: 150 };
 
 /**
  * Return the settings kept in this browser, and the plan's where there are none.
+ *
+ * Those of one participant are not the next one's: all begin with the same picture and sound.
  * @param {{steering: Settings["steering"], fov_deg: number}} plan
+ * @param {string} [whose] participant
  * @returns {Settings}
  */
-export function readSettings(plan) {
+export function readSettings(plan, whose = "") {
   /** @type {Settings} */
   const first = {
     camera: "cockpit",
@@ -32,8 +40,9 @@ export function readSettings(plan) {
     steering: plan.steering,
     fov_deg: plan.fov_deg,
     motion: "auto",
+    whose,
   };
-  return checked({ ...first, ...fromJson(KEY) }, first);
+  return checked({ ...first, ...fromJson(keyOf(whose)) }, first);
 }
 
 /**
@@ -56,12 +65,27 @@ export function checked(settings, first) {
     return [name, values.some((one) => one === settings[name]) ? settings[name] : first[name]];
   });
   const fits = settings.fov_deg >= FOV_DEG.low && settings.fov_deg <= FOV_DEG.high;
-  return { ...Object.fromEntries(known), fov_deg: fits ? settings.fov_deg : first.fov_deg };
+  const { whose } = first;
+  return { ...Object.fromEntries(known), whose, fov_deg: fits ? settings.fov_deg : first.fov_deg };
 }
 
 /** @param {Settings} settings */
 export function saveSettings(settings) {
-  toJson(KEY, settings);
+  toJson(keyOf(settings.whose), settings);
+}
+
+/** @param {string} whose */
+function keyOf(whose) {
+  return `${KEY} ${whose}`.trim();
+}
+
+/**
+ * @param {Settings} settings
+ * @returns {Shown}
+ */
+export function shownBy(settings) {
+  const { camera, sound, mirror, unit, fov_deg } = settings;
+  return { camera, sound, mirror, unit, fov_deg, reduced_motion: reducedMotion(settings) };
 }
 
 /**
