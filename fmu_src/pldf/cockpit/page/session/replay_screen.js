@@ -25,14 +25,15 @@ const RATES = [1, 2, 4, 8];
  * @param {Dropped} dropped at least one recording or profile
  * @param {() => void} back
  * @param {HTMLElement[]} notes what else is to be said
+ * @param {HTMLElement[]} more what else can be done
  */
-export function watch(app, dropped, back, notes = []) {
+export function watch(app, dropped, back, notes = [], more = []) {
   const watched = dropped.recordings.map(({ name, replay }) => ({
     name,
     replay,
     by_distance: new ByDistance(replay.frames),
   }));
-  new ReplayScreen(app, watched, dropped.profiles, back, notes);
+  new ReplayScreen(app, watched, dropped.profiles, back, notes, more);
 }
 
 class ReplayScreen {
@@ -42,13 +43,15 @@ class ReplayScreen {
    * @param {Dropped["profiles"]} profiles
    * @param {() => void} back
    * @param {HTMLElement[]} notes
+   * @param {HTMLElement[]} more
    */
-  constructor(app, watched, profiles, back, notes) {
+  constructor(app, watched, profiles, back, notes, more) {
     this.app = app;
     this.watched = watched;
     this.profiles = profiles;
     /** @type {Unit} */
     this.unit = app.settings.unit === "mph" ? "MPH" : "KMH";
+    this.more = more;
     this.playing = false;
     this.rate = 1;
     this.time_s = 0;
@@ -110,7 +113,7 @@ class ReplayScreen {
       this.time_s = Number(this.slider?.value);
     });
     this.play = button(say("stop"), () => this.toggle());
-    return element("div", { class: "replay-bar" }, this.play, this.slider, rate, this.chooser(), back);
+    return element("div", { class: "replay-bar" }, this.play, this.slider, rate, this.chooser(), ...this.more, back);
   }
 
   /** Which of several recordings is watched. */

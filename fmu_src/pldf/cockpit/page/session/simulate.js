@@ -5,7 +5,8 @@ import { readProfile } from "../engine/profile.js";
 import { readReplay } from "../engine/replay.js";
 import { element } from "../dom.js";
 import { language } from "../language.js";
-import { showPage, showProblem } from "./app.js";
+import { button, showPage, showProblem } from "./app.js";
+import { saveAs, zipped } from "./hand_out.js";
 import { watch } from "./replay_screen.js";
 import { driveSetup } from "./setup.js";
 import { say } from "./words.js";
@@ -15,8 +16,10 @@ import { say } from "./words.js";
 /** @typedef {import("../types.js").Files} Files */
 /** @typedef {import("../types.js").PlannedDrive} PlannedDrive */
 /** @typedef {import("./app.js").App} App */
+/** @typedef {{results: [string, DriveResult][], profiles: Files}} Driven by phase; the last profiles */
 
 const DRIVER_ID = 1;
+const ZIP = "pldf-simulated.zip";
 
 /**
  * Simulate a participant, then show all drives.
@@ -35,15 +38,31 @@ export async function simulate(app, back) {
       name,
       replay: readReplay(result.recording),
     }));
-    watch(app, { recordings, profiles, road: null, refused: [] }, back);
+    const dropped = { recordings, profiles, road: null, refused: [] };
+    const save = () => saveAs(ZIP, zipped(filesOf(driven)));
+    watch(app, dropped, back, [], [button(say("simulation_save"), save)]);
   } catch (problem) {
     showProblem(app.root, problem);
   }
 }
 
 /**
+ * Return the drives as files of a study; the data of people are in another place.
+ * @param {Driven} driven
+ * @returns {Files}
+ */
+function filesOf({ results, profiles }) {
+  const recordings = results.map(([phase, { recording }]) => [
+    `recordings/S0${DRIVER_ID}_${phase}.csv`,
+    new TextEncoder().encode(recording),
+  ]);
+  const learned = Object.entries(profiles).map(([name, bytes]) => [`profiles/${name}`, bytes]);
+  return Object.fromEntries([...recordings, ...learned]);
+}
+
+/**
  * @param {App} app
- * @returns {Promise<{results: [string, DriveResult][], profiles: Files}>}
+ * @returns {Promise<Driven>}
  */
 async function drivenAll(app) {
   /** @type {[string, DriveResult][]} */
