@@ -139,6 +139,26 @@ def test_native_without_the_extra_names_it(empty: Path, missing: str) -> None:
     assert not [*empty.rglob("*.fmu")]
 
 
+@pytest.mark.parametrize("missing", ["lief", "ziglang"])
+def test_the_cockpit_needs_no_compiler(empty: Path, missing: str) -> None:
+    code = (
+        f"import sys; sys.modules[{missing!r}] = None\n"
+        "from pldf.cli import main; sys.exit(main(['cockpit', '--export', 'cockpit.html']))"
+    )
+    result = run(sys.executable, "-c", code, cache=empty / "cache")
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert Path("cockpit.html").stat().st_size > 1_000_000
+    assert not [*empty.rglob("*.wasm")]  # those of the wheel, none made here
+
+
+def test_the_cockpits_modules_come_with_their_licences() -> None:
+    names = {Path(str(f)).name for f in files("adaptive-pldf") or () if "page/wasm/" in str(f)}
+    assert {name for name in names if name.endswith(".wasm")} == {
+        name.replace(".fmu", ".wasm") for name in FMUS
+    }
+    assert "LICENSES.txt" in names
+
+
 def test_the_api_works(empty: Path) -> None:
     route = pldf.open_route("study")
     assert len(pldf.base_profile(route)) == route.nodes

@@ -26,7 +26,7 @@ LINKED_AS: Final = {
     ".dll": ("-shared",),
     ".dylib": ("-shared", "-Wl,-install_name,@rpath/{name}"),
     ".wasm": (
-        "-Os", "-mexec-model=reactor", "-Wl,-z,stack-size=1048576",
+        "-Os", "-flto", "-mexec-model=reactor", "-Wl,-z,stack-size=1048576",
         "-Wl,--export-dynamic", "-Wl,--export=malloc", "-Wl,--export=free",
     ),
 }  # fmt: skip

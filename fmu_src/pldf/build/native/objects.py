@@ -10,11 +10,13 @@ library, no Python and no numba at run time.
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 import importlib
 import linecache
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -30,12 +32,15 @@ import numba
 
 from ...cache import user_cache
 from ...compiled import OPTIONS, compile_modules, pack
-from ...cosim.platforms import COMPILED
+from ...cosim.platforms import COMPILED, WASM
 from ...files.disk import replace_file
 from .symbols import needed_by_object
 
 # What LLVM may call in place of a loop or an instruction that the target lacks (bzero: macOS).
 LIBRARY: Final = frozenset({"__bzero", "bzero", "floor", "memcpy", "memmove", "memset", "sqrt"})
+_TEXTS: Final = (
+    "llvm.gz"  # the entry points in LLVM's assembly language, before any target's passes
+)
 _PLACE: Final = re.compile(r"^During: .* at (\S.*) \((\d+)\)$", re.MULTILINE)
 _RECORD_TYPE: Final = re.compile(r"Record\(\[.*?\], \d+, \w+\)")  # as numba writes it, at length
 
@@ -54,20 +59,23 @@ def compile_objects(model: str, targets: Sequence[str]) -> dict[str, bytes]:
     missing = [target for target in targets if target not in objects]
     if not missing:
         return objects
-    with tempfile.TemporaryDirectory(prefix="native_") as folder:
-        for inlined in (True, False):
-            group = [target for target in missing if COMPILED[target].inlined == inlined]
+    with tempfile.TemporaryDirectory(prefix="native_") as temporary:
+        folder = Path(temporary)
+        with suppress(OSError):  # what all targets have in common, and what takes longest
+            shutil.copy(cache / _TEXTS, folder)
+        # A process each: LLVM makes another object of x86-64 once it has made one of WebAssembly.
+        for group in ([t for t in missing if t != WASM], [t for t in missing if t == WASM]):
             if group:
-                _compile(model, Path(folder), group, inlined)
-        made = {target: Path(folder, f"{target}.o").read_bytes() for target in missing}
+                _compile(model, folder, group)
+        made = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
     with suppress(OSError):  # compiled anew next time: slower, not wrong
         cache.mkdir(parents=True, exist_ok=True)
-        for target, data in made.items():
-            replace_file(cache / f"{target}.o", data)
-    return {**objects, **made}
+        for name, data in made.items():
+            replace_file(cache / name, data)
+    return {**objects, **{target: made[f"{target}.o"] for target in missing}}
 
 
-def _compile(model: str, folder: Path, targets: Sequence[str], inlined: bool) -> None:
+def _compile(model: str, folder: Path, targets: Sequence[str]) -> None:
     # The same code whatever processor builds it, and none from somebody's cache. Where colorama is
     # installed, numba paints its messages, in which the line of a kernel is looked for.
     generic = {
@@ -75,7 +83,6 @@ def _compile(model: str, folder: Path, targets: Sequence[str], inlined: bool) ->
         "NUMBA_CPU_FEATURES": "",
         "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1",
         "PLDF_CACHE": str(folder),
-        **({} if inlined else {"NUMBA_OPT": "0"}),  # numba's own passes inline, too
     }
     kept = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")}
     program = [sys.executable, "-W", "ignore", "-m", __name__, model, str(folder), *targets]
@@ -104,10 +111,13 @@ def _digest(model: str) -> str:
 
 
 def main(model_name: str, folder: str, targets: Sequence[str]) -> None:
-    """Write one object file per target into ``folder``."""
+    """Write one object file per target into ``folder``, and what they are all made of."""
     module, _, name = model_name.partition(":")
     model = getattr(importlib.import_module(module), name)
-    texts = _llvm_texts(model)
+    kept = Path(folder, _TEXTS)
+    if not kept.exists():
+        kept.write_bytes(gzip.compress("\0".join(_llvm_texts(model)).encode(), mtime=0))
+    texts = gzip.decompress(kept.read_bytes()).decode().split("\0")
     for target in targets:
         Path(folder, f"{target}.o").write_bytes(_emit(texts, target, model.entries))
 
@@ -147,8 +157,8 @@ def _emit(texts: Sequence[str], target: str, entries: Sequence[str]) -> bytes:
         else:
             whole.link_in(module)
     assert whole is not None
-    attribute = "alwaysinline" if where.inlined else "optsize"
-    _hide_all_but(whole, {f"model_{entry}" for entry in entries}, attribute)
+    _hide_all_but(whole, {f"model_{entry}" for entry in entries})
+    _say_how(whole, where.inlined)
     options = llvm.create_pipeline_tuning_options(speed_level=3 if where.inlined else 2)
     builder = llvm.create_pass_builder(machine, options)
     # What is not inlined takes a second run: the first finds out that no function fails, so that
@@ -166,7 +176,7 @@ def _retarget(text: str, triple: str, machine: Any) -> str:
     return re.sub(r'target datalayout = "[^"]*"', layout, text)
 
 
-def _hide_all_but(module: Any, visible: set[str], attribute: str) -> None:
+def _hide_all_but(module: Any, visible: set[str]) -> None:
     defined = [t for t in (*module.functions, *module.global_variables) if not t.is_declaration]
     missing = visible - {thing.name for thing in defined}
     if missing:
@@ -176,9 +186,17 @@ def _hide_all_but(module: Any, visible: set[str], attribute: str) -> None:
             thing.visibility = "hidden"  # for the C runtime, not for the host
         else:
             thing.linkage = "internal"
-            if thing.is_function:  # alwaysinline: what is known in one helps in the others
-                thing.add_function_attribute(attribute)
             thing.name = f"inner_{number}"  # numba's own names hold the record's whole layout
+
+
+def _say_how(module: Any, inlined: bool) -> None:
+    for function in module.functions:
+        if not function.is_declaration:
+            if not inlined:
+                function.add_function_attribute("minsize")
+                function.add_function_attribute("optsize")
+            elif function.linkage == llvm.Linkage.internal:
+                function.add_function_attribute("alwaysinline")  # what is known in one helps all
 
 
 def _check(data: bytes) -> None:

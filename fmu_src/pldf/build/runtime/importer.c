@@ -30,7 +30,12 @@ bool importer_log(Importer *importer, bool on, size_t count, const char *const c
     return true;
 }
 
-static bool is_hex(char c) { return c && strchr("0123456789abcdefABCDEF", c); }
+/* Of a hexadecimal digit; below 0: it is none. */
+static int digit(char c) {
+    static const char digits[] = "0123456789abcdef";
+    const char *at = c ? strchr(digits, c >= 'A' && c <= 'F' ? c | 0x20 : c) : NULL;
+    return at ? (int)(at - digits) : -1;
+}
 
 /* Capitals or not; `with` has none. */
 static bool starts(const char *text, const char *with) {
@@ -53,10 +58,8 @@ void importer_set_resources(Importer *importer, const char *address) {
     if (coded && at[0] == '/' && has_drive(at + 1)) at++;
     size_t length = 0;
     for (; *at && length + 1 < PATH_SIZE; at++) {
-        unsigned byte = 0;
-        bool escaped = coded && *at == '%' && is_hex(at[1]) && is_hex(at[2]);
-        if (escaped) sscanf(at + 1, "%2x", &byte);
-        path[length++] = escaped ? (char)byte : *at;
+        bool escaped = coded && *at == '%' && digit(at[1]) >= 0 && digit(at[2]) >= 0;
+        path[length++] = escaped ? (char)(16 * digit(at[1]) + digit(at[2])) : *at;
         if (escaped) at += 2;
     }
     while (length > 1 && (path[length - 1] == '/' || path[length - 1] == '\\')) length--;
