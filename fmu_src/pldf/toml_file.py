@@ -70,6 +70,19 @@ class TomlFile:
         except msgspec.ValidationError as error:
             self._explain(kind, table, str(error))
 
+    def problems(self, kind: type[msgspec.Struct], table: str) -> list[str]:
+        """Return what is wrong with each key of a table by itself; ``kind`` needs none of them."""
+        found = []
+        for key, value in self.within(table).items():
+            try:
+                msgspec.convert({key: value}, kind)
+            except msgspec.ValidationError as error:
+                try:
+                    self._explain(kind, (table,), str(error))
+                except ModelError as problem:
+                    found.append(str(problem))
+        return found
+
     def within(self, *table: str) -> Any:
         """Return what stands in the file, in one of its tables, or in a table within."""
         found: Any = self.table

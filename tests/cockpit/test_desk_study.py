@@ -94,12 +94,53 @@ def test_all_that_can_be_said(tmp_path: Path) -> None:
             'line 2, cockpit.breaks.A9: no drive of this study; known are "A1"',
         ),
         ("[cockpit.breaks]\nA1 = true", "cockpit.breaks.A1: true must be minutes"),
-        ('[cockpit.ask]\nssq = ["now"]', r'cockpit.ask: .*\["now"\] must be a list'),
+        ('[cockpit.ask]\nssq = ["now"]', r'line 2, cockpit.ask.ssq: \["now"\] must be a list'),
+        ('[cockpit.ask]\nsqq = ["A"]', "line 2, cockpit.ask.sqq: unknown; did you mean ssq?"),
+        (
+            '[drives]\nphases = ["A2", "B1"]\n[cockpit.ask]\nssq = ["A3"]',
+            r'line 4, cockpit.ask.ssq: \["A3"\] must be a list out of "A2", "B1", "start"',
+        ),
     ],
 )
 def test_what_is_wrong_is_named(tmp_path: Path, text: str, problem: str) -> None:
     with pytest.raises(ModelError, match=problem):
         desk(tmp_path, text)
+
+
+WRONG = """
+[cockpit]
+practise_end_m = 3
+explanation = "text"
+language = "fr"
+fov_deg = 5
+"""
+WRONG_TOO = """
+[cockpit]
+explanations = []
+welcome = "none.md"
+[cockpit.breaks]
+A1 = 0
+A9 = 1
+[cockpit.ask]
+sqq = ["A"]
+ssq = ["begin"]
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "keys"),
+    [
+        (WRONG, ("practise_end_m", "explanation", "language", "fov_deg")),
+        (WRONG_TOO, ("explanations", "welcome", "breaks.A1", "breaks.A9", "ask.sqq", "ask.ssq")),
+    ],
+)
+def test_all_that_is_wrong_is_told_at_once(
+    tmp_path: Path, text: str, keys: tuple[str, ...]
+) -> None:
+    with pytest.raises(ModelError) as refused:
+        desk(tmp_path, text)
+    for key in keys:
+        assert f", cockpit.{key}: " in str(refused.value)
 
 
 @pytest.mark.parametrize(

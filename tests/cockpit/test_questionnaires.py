@@ -3,19 +3,35 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from pldf.analysis.questionnaires.labels import _ENDS
 from pldf.analysis.questionnaires.scales import LAAN, PROFILE, asked_by
-from pldf.cockpit.questionnaires import PACKAGED, read_questionnaires
+from pldf.cockpit.problems import Problems
+from pldf.cockpit.questionnaires import PACKAGED, Asked, read_questionnaires
 from pldf.errors import ModelError
+from pldf.study.phases import PHASES
+from pldf.toml_file import TomlFile, shown
 
 Item = dict[str, object]
 
 
+def read(path: Path, ask: dict[str, object]) -> list[dict[str, Any]]:
+    """Read for a study file beside it, which says when to ask what."""
+    study = path.with_name("study.toml") if path != PACKAGED else PACKAGED
+    if path != PACKAGED:
+        lines = [f"{name} = {shown(after)}\n" for name, after in ask.items()]
+        study.write_text("".join(["[cockpit.ask]\n", *lines]), encoding="utf-8")
+    problems = Problems()
+    found = read_questionnaires(path, Asked(TomlFile(study), ask, list(PHASES)), problems)
+    problems.finish()
+    return found
+
+
 def packaged() -> dict[str, list[Item]]:
     everything = {"ssq": ["start"], "nasa_tlx": ["A", "B"]}
-    return {one["id"]: one["items"] for one in read_questionnaires(PACKAGED, everything)}
+    return {one["id"]: one["items"] for one in read(PACKAGED, everything)}
 
 
 def written(folder: Path, text: str) -> Path:
@@ -46,7 +62,7 @@ def test_the_optional_ones_are_whole() -> None:
     assert len(found["ssq"]) == 16
     assert [option["key"] for option in found["ssq"][0]["options"]] == ["0", "1", "2", "3"]  # type: ignore[attr-defined]
     assert [item["boxes"] for item in found["nasa_tlx"]] == [21] * 6
-    usual = [one["id"] for one in read_questionnaires(PACKAGED, {})]
+    usual = [one["id"] for one in read(PACKAGED, {})]
     assert usual == ["acceptance", "speed_profile", "remarks"]
 
 
@@ -74,9 +90,7 @@ more = { kind = "text", text = "More?", required = false }
 
 
 def test_a_file_of_ones_own(tmp_path: Path) -> None:
-    first, about = read_questionnaires(written(tmp_path, MINE), {"about": ["end"], "ssq": ["B2"]})[
-        ::2
-    ]
+    first, about = read(written(tmp_path, MINE), {"about": ["end"], "ssq": ["B2"]})[:2]
     assert first["id"] == "acceptance"
     assert (about["after"], about["title"]) == (["end"], {"en": "About you", "de": "About you"})
     licence, years, more = about["items"]
@@ -110,6 +124,7 @@ g = { boxes = 1 }
 h = 3
 j = { text = { fr = "?" } }
 k = { left = { en = 1 } }
+l = { boxes = 7 }
 laan_1 = { boxes = 7 }
 i = { kind = "choice", text = "?", options = [{ key = "1" }, { key = "1" }] }
 
@@ -117,7 +132,7 @@ i = { kind = "choice", text = "?", options = [{ key = "1" }, { key = "1" }] }
 title = "x"
 after = ["end"]
 [half.items]
-profile_1 = {}
+profile_1 = { text = "?" }
 [none]
 title = "x"
 after = ["later"]
@@ -127,13 +142,15 @@ after = ["later"]
 def test_all_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
     path = written(tmp_path, WRONG)
     with pytest.raises(ModelError) as refused:
-        read_questionnaires(path, {"missing": ["A"], "half": "B"})
+        read(path, {"missing": ["A"], "half": "B"})
     told = str(refused.value).splitlines()
-    assert all(line.startswith(f"{path}, line ") for line in told)
+    beside = path.with_name("study.toml")
+    assert all(line.startswith((f"{path}, line ", f"{beside}, line ")) for line in told)
     text = "\n".join(told)
     for problem in (
-        'line 2, include: "acceptence" must be one of "acceptance"',
-        'include: "missing" must be one of',
+        'my.toml, line 2, include: ["acceptance", "acceptence"] must be a list out of "acceptance"',
+        "study.toml, line 2, cockpit.ask.missing: unknown; ",
+        'study.toml, line 3, cockpit.ask.half: "B" must be a list out of',
         "line 3, loose: unknown; write [loose]",
         "line 5, Bad-Name: as a name:",
         "colour: unknown",
@@ -148,9 +165,9 @@ def test_all_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
         "mine.items.k.left: { en = 1 } must be a text in quotes",
         "mine.items.h: 3 must be a table",
         "mine.items.laan_1: its scale has 5 boxes",
+        "mine.items.l: no text",
         "mine.items.i: two options have the same key",
         "profile_5, profile_6 is missing of the scale speed_profile",
-        'half: "B" must be a list out of',
         "none.items: no items",
         'none.after: ["later"] must be a list out of "A1"',
     ):
@@ -160,11 +177,11 @@ def test_all_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
 def test_answers_on_the_system_belong_to_drives(tmp_path: Path) -> None:
     path = written(tmp_path, 'include = ["acceptance"]\n')
     with pytest.raises(ModelError, match="answers on the system belong to drives"):
-        read_questionnaires(path, {"acceptance": ["end"]})
+        read(path, {"acceptance": ["end"]})
 
 
 def test_one_column_for_two_items(tmp_path: Path) -> None:
     text = 'include = ["remarks"]\n[mine]\ntitle = "x"\nafter = ["end"]\n[mine.items]\n'
     path = written(tmp_path, text + 'remarks = { kind = "text", text = "?" }\n')
     with pytest.raises(ModelError, match=r"mine.items.remarks: an item of \[remarks\], too"):
-        read_questionnaires(path, {})
+        read(path, {})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,13 +14,15 @@ from ..errors import ModelError
 from ..study.study_file import Study, read_study, study_path
 from ..study.study_tables import CockpitTable, StudyTables
 from ..toml_file import TomlFile, listed, shown
-from .questionnaires import PACKAGED, read_questionnaires
+from .problems import Problems
+from .questionnaires import PACKAGED, Asked, read_questionnaires
 
 # The packaged study of people at a desk.
 DESK: Final = "cockpit"
 _TEXTS: Final = Path(__file__).parent / "texts"
 _PAGES: Final = ("welcome", "consent", "thanks")
 LANGUAGES: Final = ("en", "de")
+_TABLE: Final = ("cockpit",)
 _BREAK_MAX_MIN: Final = 24 * 60
 
 
@@ -46,23 +49,30 @@ def read_desk_study(name: str = DESK) -> DeskStudy:
     """Read a study file for people: ``name`` is its path, or a packaged study.
 
     Raises:
-        ModelError: naming file, line, key and the allowed values; all problems of questionnaires
-            at once.
+        ModelError: naming file, line, key and the allowed values; of the table ``[cockpit]`` and
+            of questionnaires all that is wrong.
     """
     path = study_path(name)
-    study = read_study(path)
     file = TomlFile(path)
+    problems = Problems()
+    if isinstance(file.within("cockpit"), dict):
+        for text in file.problems(CockpitTable, "cockpit"):
+            problems.note(text)
+    problems.finish()
+    study = read_study(path)
     table = file.read(StudyTables).cockpit
     phases = [phase.name for phase in study.settings.phases]
     if not table.explanations:
-        file.fail(("cockpit", "explanations"), 'empty; choose out of "none", "icon", "text"')
-    return DeskStudy(
+        problems.wrong(file, (*_TABLE, "explanations"), 'empty; choose "none", "icon" or "text"')
+    desk = DeskStudy(
         study=study,
         table=table,
-        pages={page: _pages(file, table, page) for page in _PAGES},
-        breaks=_breaks(file, table, phases),
-        questionnaires=_questionnaires(file, table),
+        pages={page: _pages(file, table, page, problems) for page in _PAGES},
+        breaks=_breaks(file, table, phases, problems),
+        questionnaires=_questionnaires(file, table, phases, problems),
     )
+    problems.finish()
+    return desk
 
 
 def as_html(markdown: str) -> str:
@@ -70,40 +80,50 @@ def as_html(markdown: str) -> str:
     return str(MarkdownIt("js-default").render(markdown))
 
 
-def _pages(file: TomlFile, table: CockpitTable, page: str) -> dict[str, str]:
+def _pages(file: TomlFile, table: CockpitTable, page: str, problems: Problems) -> dict[str, str]:
     """Return a text in both languages; the laboratory's own may be in one alone."""
     named: str | dict[str, str] = getattr(table, page)
     own = dict.fromkeys(LANGUAGES, named) if isinstance(named, str) else named
-    return {
-        language: _page(file, page, own.get(language, ""), f"{page}.{language}.md")
-        for language in LANGUAGES
-    }
+    made = {}
+    for language in LANGUAGES:
+        packaged = _TEXTS / f"{page}.{language}.md"
+        path = file.path.parent / own[language] if own.get(language) else packaged
+        made[language] = problems.tried(partial(_page, file, page, path)) or ""
+    return made
 
 
-def _page(file: TomlFile, page: str, own: str, packaged: str) -> str:
-    path = file.path.parent / own if own else _TEXTS / packaged
+def _page(file: TomlFile, page: str, path: Path) -> str:
     try:
         return as_html(path.read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError) as problem:
         reason = getattr(problem, "strerror", None) or "not a UTF-8 text file"
-        file.fail(("cockpit", page), f"{path} cannot be read ({reason}); write it beside the study")
+        file.fail((*_TABLE, page), f"{path} cannot be read ({reason}); write it beside the study")
 
 
-def _breaks(file: TomlFile, table: CockpitTable, phases: Sequence[str]) -> dict[str, float]:
+def _breaks(
+    file: TomlFile, table: CockpitTable, phases: Sequence[str], problems: Problems
+) -> dict[str, float]:
+    good = {}
     for phase, minutes in table.breaks.items():
-        key = ("cockpit", "breaks", phase)
-        if phase not in phases:
-            file.fail(key, f"no drive of this study; known are {listed(phases)}")
+        key = (*_TABLE, "breaks", phase)
         number = isinstance(minutes, int | float) and not isinstance(minutes, bool)
-        if not number or not 0 < minutes <= _BREAK_MAX_MIN:
-            file.fail(key, f"{shown(minutes)} must be minutes, above 0 and up to {_BREAK_MAX_MIN}")
-    return {phase: float(minutes) for phase, minutes in table.breaks.items()}
+        if phase not in phases:
+            problems.wrong(file, key, f"no drive of this study; known are {listed(phases)}")
+        elif not number or not 0 < minutes <= _BREAK_MAX_MIN:
+            text = f"{shown(minutes)} must be minutes, above 0 and up to {_BREAK_MAX_MIN}"
+            problems.wrong(file, key, text)
+        else:
+            good[phase] = float(minutes)
+    return good
 
 
-def _questionnaires(file: TomlFile, table: CockpitTable) -> list[dict[str, Any]]:
+def _questionnaires(
+    file: TomlFile, table: CockpitTable, phases: Sequence[str], problems: Problems
+) -> list[dict[str, Any]]:
     named = file.path.parent / table.questionnaires if table.questionnaires else PACKAGED
+    asked = Asked(file, table.ask, phases)
     try:
-        return read_questionnaires(named, table.ask)
-    except ModelError as problem:
-        key = "questionnaires" if table.questionnaires else "ask"
-        file.fail(("cockpit", key), str(problem))
+        return read_questionnaires(named, asked, problems)
+    except ModelError as problem:  # it is not there, or no TOML
+        problems.wrong(file, (*_TABLE, "questionnaires"), str(problem))
+        return []

@@ -6,15 +6,14 @@ How such a file is written stands in ``questionnaires.toml``, the packaged one.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Any, Final, NamedTuple, TypeVar
 
 from ..analysis.questionnaires.scales import BOXES, SCALES, asked_by
-from ..errors import ModelError
-from ..study.phases import PHASES
-from ..toml_file import Key, TomlFile, listed, shown
+from ..toml_file import Key, TomlFile, shown
+from .problems import Problems
 from .question_tables import MOMENTS, ItemTable, OptionTable, QuestionnaireTable, Words
 
 PACKAGED: Final = Path(__file__).parent / "questionnaires.toml"
@@ -23,61 +22,90 @@ _ID: Final = re.compile(r"[a-z][a-z0-9_]*")
 _TAKEN: Final = ("participant", "system", "phase", "drive")
 _ITEM_KEYS: Final = ItemTable.__struct_fields__
 _INCLUDE: Final = "include"
+_ASK: Final = ("cockpit", "ask")
 
 T = TypeVar("T")
 
 
-def read_questionnaires(path: Path, ask: Mapping[str, Any]) -> list[dict[str, Any]]:
+class Asked(NamedTuple):
+    """What the study says of questionnaires, in its table ``[cockpit.ask]``.
+
+    Attributes:
+        file: the study file.
+        when: when a questionnaire is asked, by its id, in place of what its own file says.
+        phases: the drives of the study.
+    """
+
+    file: TomlFile
+    when: Mapping[str, Any]
+    phases: Sequence[str]
+
+
+def read_questionnaires(path: Path, asked: Asked, problems: Problems) -> list[dict[str, Any]]:
     """Return the questionnaires of a file in the form of the page (``Questionnaire``).
 
     Args:
         path: the file.
-        ask: when a questionnaire is asked, by its id, in place of what the file says; of those
-            that come with the package, too, as if the file included them.
+        asked: what the study says; it may name those that come with the package, too.
+        problems: gets all that is wrong, each with file, line, key and the way out.
 
     Raises:
-        ModelError: all that is wrong, each with file, line, key and the way out.
+        ModelError: the file cannot be read, or is no TOML.
     """
-    file = TomlFile(path)
-    asked_more = [name for name in ask if name not in file.table]
-    reading = _Reading(file)
-    included = [*reading.included(), *asked_more]
-    packaged = {} if path == PACKAGED else _Reading(TomlFile(PACKAGED)).questionnaires()
-    for name in included:
-        if name not in packaged:
-            reading.wrong((_INCLUDE,), f"{shown(name)} must be one of {listed(packaged)}")
-    found = {name: packaged[name] for name in included if name in packaged}
-    found |= reading.questionnaires()
-    for name, after in ask.items():
-        if name in found:
-            found[name] = {**found[name], "after": reading.moments((name,), after)}
+    reading = _Reading(TomlFile(path), asked.phases, problems)
+    packaged = _Reading(TomlFile(PACKAGED), asked.phases, problems).questionnaires()
+    own = {} if path == PACKAGED else reading.questionnaires()
+    found = {name: packaged[name] for name in reading.included(packaged)}
+    if path == PACKAGED:
+        found = packaged
+    found |= own
+    for name, when in asked.when.items():
+        key = (*_ASK, name)
+        if name in found or name in packaged:
+            after = _moments(asked.file, key, when, asked.phases, problems)
+            found[name] = {**(found.get(name) or packaged[name]), "after": after}
+        elif name not in reading.names:
+            problems.tried(partial(asked.file.unknown, key, [*reading.names, *packaged]))
     reading.check(found)
-    reading.finish()
     return [one for one in found.values() if one["after"]]
 
 
+def _moments(
+    file: TomlFile, key: Key, after: object, phases: Sequence[str], problems: Problems
+) -> list[str]:
+    """Return when something is asked, checked."""
+    known = [*phases, *MOMENTS]
+    if isinstance(after, list) and all(moment in known for moment in after):
+        return after
+    text = f"{shown(after)} must be a list out of {', '.join(map(shown, known))}"
+    problems.wrong(file, key, text)
+    return []
+
+
 class _Reading:
-    """One file, and what was found wrong in it."""
+    """One file, read for a study with these drives."""
 
-    def __init__(self, file: TomlFile) -> None:
+    def __init__(self, file: TomlFile, phases: Sequence[str], problems: Problems) -> None:
         self._file = file
-        self._problems: list[str] = []
+        self._phases = phases
+        self._problems = problems
 
-    def finish(self) -> None:
-        """Raise ModelError if something is wrong."""
-        if self._problems:
-            raise ModelError("\n".join(dict.fromkeys(self._problems)))
+    @property
+    def names(self) -> list[str]:
+        """What the tables of the file are called."""
+        return [name for name, table in self._file.table.items() if isinstance(table, dict)]
 
     def wrong(self, key: Key, problem: str) -> None:
         """Note that something is wrong with a key."""
-        self._tried(lambda: self._file.fail(key, problem))
+        self._problems.wrong(self._file, key, problem)
 
-    def included(self) -> list[str]:
-        """Return the names of the packaged questionnaires that the file asks for."""
+    def included(self, packaged: Collection[str]) -> list[str]:
+        """Return the names of the ``packaged`` questionnaires that the file asks for."""
         names = self._file.table.get(_INCLUDE, [])
-        if isinstance(names, list) and all(isinstance(name, str) for name in names):
+        if isinstance(names, list) and all(name in packaged for name in names):
             return names
-        self.wrong((_INCLUDE,), f"{shown(names)} must be a list of names")
+        known = ", ".join(map(shown, packaged))
+        self.wrong((_INCLUDE,), f"{shown(names)} must be a list out of {known}")
         return []
 
     def questionnaires(self) -> dict[str, dict[str, Any]]:
@@ -91,14 +119,6 @@ class _Reading:
             elif (one := self._questionnaire(name, table)) is not None:
                 made[name] = one
         return made
-
-    def moments(self, key: Key, after: object) -> list[str]:
-        """Return when something is asked, checked."""
-        known = [*PHASES, *MOMENTS]
-        if not isinstance(after, list) or any(moment not in known for moment in after):
-            self.wrong(key, f"{shown(after)} must be a list out of {', '.join(map(shown, known))}")
-            return []
-        return list(after)
 
     def check(self, found: Mapping[str, Mapping[str, Any]]) -> None:
         """Check what concerns more than one questionnaire: names of items, whole scales."""
@@ -135,14 +155,16 @@ class _Reading:
     def _questionnaire(self, name: str, table: Mapping[str, Any]) -> dict[str, Any] | None:
         items = self._items(name, table)
         about = {k: v for k, v in table.items() if k != "items" and k not in _ITEM_KEYS}
-        read = self._tried(lambda: self._read(QuestionnaireTable, about, (name,)))
+        read = self._problems.tried(lambda: self._read(QuestionnaireTable, about, (name,)))
         if read is None or not self._named((name,)):
             return None
         return {
             "id": name,
             "title": _both(read.title),
             "intro": _both(read.intro),
-            "after": self.moments((name, "after"), list(read.after)),
+            "after": _moments(
+                self._file, (name, "after"), list(read.after), self._phases, self._problems
+            ),
             "items": items,
         }
 
@@ -159,14 +181,22 @@ class _Reading:
                 self.wrong(key, f'{shown(own)} must be a table, such as {{ text = "..." }}')
                 continue
             content = {**shared, **own}
-            read = self._tried(partial(self._read, ItemTable, content, key))
-            if read is not None and self._named(key) and self._item_fits(key, read, made):
+            read = self._problems.tried(partial(self._read, ItemTable, content, key))
+            if read is not None and self._named(key) and self._item_fits(key, read, own, made):
                 made.append(_item(item, read))
         return made
 
-    def _item_fits(self, key: Key, read: ItemTable, before: Sequence[Mapping[str, Any]]) -> bool:
-        """Whether the keys of an item fit together; tells what does not."""
+    def _item_fits(
+        self,
+        key: Key,
+        read: ItemTable,
+        own: Collection[str],
+        before: Sequence[Mapping[str, Any]],
+    ) -> bool:
+        """Whether the keys of an item, its ``own`` among them, fit together; tells what not."""
         problems = list(_misfits(key[-1], read, [item["id"] for item in before]))
+        if not any(_both(read.text).values()) and not {"left", "right"} <= set(own):
+            problems.append('no text: write text = { en = "...", de = "..." }')
         for problem in problems:
             self.wrong(key, problem)
         return not problems
@@ -188,13 +218,6 @@ class _Reading:
         finally:
             standing[key[-1]] = before
 
-    def _tried(self, call: Callable[[], T]) -> T | None:
-        try:
-            return call()
-        except ModelError as problem:
-            self._problems.append(str(problem))
-            return None
-
 
 def _misfits(name: str, read: ItemTable, before: Sequence[str]) -> Iterator[str]:
     """Yield what does not fit together in an item."""
@@ -205,8 +228,6 @@ def _misfits(name: str, read: ItemTable, before: Sequence[str]) -> Iterator[str]
         yield "two options have the same key; the answers could not be told apart"
     if read.kind == "number" and read.low >= read.high:
         yield f"low = {read.low:g} must be below high = {read.high:g}"
-    if read.kind != "scale" and not any(_both(read.text).values()):
-        yield 'no text: write text = { en = "...", de = "..." }'
     if asked_by(name) is not None and (read.kind != "scale" or read.boxes != BOXES):
         yield f'its scale has {BOXES} boxes: write kind = "scale" and boxes = {BOXES}'
     if read.only_if is not None and read.only_if.id not in before:
