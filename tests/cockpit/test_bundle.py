@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 from pathlib import Path
 from typing import Any
 
 import pytest
 from pldf.cockpit.bundle import ROAD_FILE, bundle
+from pldf.cockpit.cluster_message import require_frame, shown_variables
 from pldf.cockpit.desk_study import read_desk_study
 from pldf.cockpit.page_json import as_json
+from pldf.cockpit.storage import Refused
 from pldf.cockpit.wasm_models import WasmModel
 from pldf.cosim.fmu import Fmu
 from pldf.cosim.master import connections
@@ -70,6 +73,14 @@ def test_the_models_are_those_of_the_fmus(
             assert isinstance(one["start"], types[one["kind"]]), one
     learn = next(one for one in told["models"]["pldf"]["variables"] if one["name"] == "learn")
     assert (learn["kind"], learn["items"]) == ("Integer", ["OFF", "FAITHFUL", "CONSISTENT"])
+
+
+def test_the_message_in_the_docs_is_one_that_clusters_show(told: dict[str, Any]) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "cockpit.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```json\n(.*?)```", page, re.DOTALL)
+    require_frame(json.loads(example), shown_variables(told))
+    with pytest.raises(Refused, match=r"vehicle\.speed is unknown; did you mean"):
+        require_frame({"values": {"vehicle.speed": 1.0}}, shown_variables(told))
 
 
 def test_the_wires_are_those_of_the_master(

@@ -20,8 +20,25 @@ ROOT = f"/{TOKEN}"
 LIVE = f"ws://127.0.0.1:8123{ROOT}/api/live"
 
 
+def variable(name: str, kind: str, causality: str = "output") -> dict[str, str]:
+    return {"name": name, "kind": kind, "causality": causality}
+
+
+FUNCTION = (
+    variable("vehicle.speed_mps", "Real", "input"),
+    variable("mode", "Integer"),
+    variable("hmi.take_over", "Boolean"),
+    variable("hmi.text", "String"),
+    variable("driver_id", "Integer", "parameter"),
+)
+BUNDLE = {
+    "version": "1",
+    "models": {"vehicle": {"variables": []}, "pldf": {"variables": FUNCTION}},
+}
+
+
 def client(folder: Path, bind: str = "127.0.0.1") -> TestClient:
-    app = application(Cockpit(b'{"version": "1"}', folder, "", bind, TOKEN))
+    app = application(Cockpit(json.dumps(BUNDLE).encode(), folder, "", bind, TOKEN))
     return TestClient(app, base_url=HERE, follow_redirects=False)
 
 
@@ -83,7 +100,7 @@ def test_other_hosts_and_origins_are_refused(asked: TestClient, headers: dict[st
     [{}, {"origin": HERE}, {"host": "localhost:8123", "origin": "http://localhost:8123"}],
 )
 def test_this_machine_may_ask(asked: TestClient, headers: dict[str, str]) -> None:
-    assert asked.get(f"{ROOT}/api/bundle", headers=headers).json() == {"version": "1"}
+    assert asked.get(f"{ROOT}/api/bundle", headers=headers).json()["version"] == "1"
     with asked.websocket_connect(LIVE, headers=headers):
         pass
 
@@ -223,6 +240,27 @@ def test_what_no_browser_reads_is_told_to_nobody(asked: TestClient, number: str)
         400,
         "NaN and Infinity are no numbers in JSON",
     )
+
+
+@pytest.mark.parametrize(
+    ("values", "problem"),
+    [
+        (None, 'a frame has "values"'),
+        ({"vehicle.speed": 1.0}, "vehicle.speed is unknown; did you mean vehicle.speed_mps?"),
+        ({"vehicle.speed_mps": "abc"}, "vehicle.speed_mps = 'abc' must be a number"),
+        ({"mode": 1.5}, "mode = 1.5 must be a whole number"),
+        ({"hmi.take_over": "yes"}, "hmi.take_over = 'yes' must be true or false"),
+        ({"hmi.text": 3}, "hmi.text = 3 must be a text"),
+        ({"zzz": 1, "mode": True}, "zzz is unknown; mode = True must be"),
+        ({"driver_id": 1}, "driver_id is unknown"),
+    ],
+)
+def test_a_simulator_is_told_what_no_cluster_shows(
+    asked: TestClient, values: object, problem: str
+) -> None:
+    answer = asked.post(f"{ROOT}/api/cluster", json={"values": values})
+    assert answer.status_code == 400
+    assert problem in answer.json()["error"]
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{", '{"kind": "shell"}', "[" * 60_000])

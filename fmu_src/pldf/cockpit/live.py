@@ -7,7 +7,7 @@ import json
 from collections import deque
 from contextlib import suppress
 from http import HTTPStatus
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
@@ -23,6 +23,22 @@ _TRY_AGAIN_LATER: Final = 1013  # of WebSocket
 _UNUSABLE: Final = 1007
 
 
+class Message(NamedTuple):
+    """What is told.
+
+    Attributes:
+        kind: one of ``KINDS``.
+        participant: whose drive; empty if it does not say.
+        content: the object.
+        text: the same as JSON.
+    """
+
+    kind: str
+    participant: str
+    content: dict[str, Any]
+    text: str
+
+
 class Live:
     """The windows that are open, and what they were told last."""
 
@@ -30,15 +46,11 @@ class Live:
         self._windows: set[Window] = set()
         self._last: dict[tuple[str, str], str] = {}
 
-    def tell(self, text: str, teller: Window | None = None) -> None:
-        """Tell a message to everybody else.
-
-        Raises:
-            Refused: it is no message as documented.
-        """
-        kind, participant, text = checked(text)
+    def tell(self, message: Message, teller: Window | None = None) -> None:
+        """Tell a message to everybody else."""
+        kind, text = message.kind, message.text
         if kind in _KEPT:
-            self._last[kind, participant] = text
+            self._last[kind, message.participant] = text
             while len(self._last) > _PARTICIPANTS_MAX:
                 del self._last[next(iter(self._last))]
         for window in self._windows - {teller}:
@@ -57,7 +69,7 @@ class Live:
         telling = asyncio.create_task(window.run(socket))
         try:
             while True:
-                self.tell(await socket.receive_text(), window)
+                self.tell(checked(await socket.receive_text()), window)
         except WebSocketDisconnect:
             pass
         except (Refused, KeyError) as problem:  # KeyError: bytes instead of text
@@ -98,8 +110,8 @@ class Window:
                     await socket.send_text(self.waiting.popleft())
 
 
-def checked(text: str) -> tuple[str, str, str]:
-    """Return kind and participant of a message, and its text with its kind.
+def checked(text: str) -> Message:
+    """Return a message that came as text.
 
     Raises:
         Refused: it is too long, no JSON object, or of no known kind.
@@ -119,4 +131,4 @@ def checked(text: str) -> tuple[str, str, str]:
         told = json.dumps(message, allow_nan=False)
     except ValueError:  # Python reads such, no browser does
         raise Refused(HTTPStatus.BAD_REQUEST, "NaN and Infinity are no numbers in JSON") from None
-    return kind, str(message.get("participant", "")), told
+    return Message(kind, str(message.get("participant", "")), message, told)

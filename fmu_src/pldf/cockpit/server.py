@@ -5,6 +5,7 @@ On this machine only, unless another address is asked for.
 
 from __future__ import annotations
 
+import json
 import secrets
 import socket
 from dataclasses import dataclass, field
@@ -22,9 +23,10 @@ from starlette.types import ASGIApp
 
 from ..errors import ModelError
 from ..roads.options import OptionNeededError, keywords, said
+from .cluster_message import require_frame, shown_variables
 from .dropped_road import ROAD_MAX, dropped_road
 from .guard import LOOPBACK, Guard
-from .live import MESSAGE_MAX, Live
+from .live import MESSAGE_MAX, Live, checked
 from .page_json import plain
 from .storage import FILE_MAX, NOT_THERE, Folder, Refused
 
@@ -116,6 +118,7 @@ class _Desk:
     def __init__(self, cockpit: Cockpit) -> None:
         self.live = Live()
         self._bundle = cockpit.bundle
+        self._shown = shown_variables(json.loads(cockpit.bundle))
         self._folder = Folder(cockpit.folder, cockpit.study)
 
     async def bundle(self, _: Request) -> Response:
@@ -151,7 +154,10 @@ class _Desk:
 
     async def tell(self, request: Request) -> Response:
         data = await _body(request, MESSAGE_MAX)
-        self.live.tell(data.decode("utf-8", "replace"))
+        message = checked(data.decode("utf-8", "replace"))
+        if message.kind == "frame":
+            require_frame(message.content, self._shown)
+        self.live.tell(message)
         return Response(status_code=HTTPStatus.NO_CONTENT)
 
 
