@@ -43,6 +43,8 @@ def test_a_file_of_ones_own_comes_before_a_packaged_study(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert study_path("paper").parent == PACKAGED
+    Path("cockpit").mkdir()  # a folder of that name is no study file
+    assert study_path("cockpit").parent == PACKAGED
     Path("paper").write_text("")
     assert study_path("paper") == Path("paper")
 

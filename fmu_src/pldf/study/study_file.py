@@ -60,7 +60,7 @@ def study_path(name: str) -> Path:
         ModelError: there is neither.
     """
     path, packaged = Path(name), PACKAGED / f"{name}.toml"
-    if path.exists():
+    if path.is_file():
         return path
     if packaged.is_file():
         return packaged
