@@ -9,6 +9,7 @@ import pytest
 from pldf.errors import ModelError
 from pldf.roads import (
     fingerprint,
+    open_road,
     open_route,
     packed_route,
     read_route,
@@ -71,3 +72,13 @@ def test_unknown_packed_routes_are_named() -> None:
 def test_study_names_the_shipped_road(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert fingerprint(open_route("study")) == fingerprint(packed_route(0))
+
+
+def test_a_folder_of_its_name_does_not_hide_the_study_road(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("study").mkdir()
+    assert open_road("study").route_id == 0
+    Path("0").write_text("s_m,curvature_per_m,speed_limit_mps\n0,0,20\n50,0,20\n")
+    assert open_road("0").route_id is None  # but a file does

@@ -158,8 +158,10 @@ def packed_route(route_id: int) -> Route:
 
 def _found(name: str) -> tuple[int | None, Path]:
     """Return the number of the packed route that a person named, None for a file, and the file."""
-    route_id = None if Path(name).exists() else _packed_id(name)
-    return route_id, Path(name) if route_id is None else _packed_file(route_id)
+    path = Path(name)
+    # A folder hides no packed route: it is none itself.
+    route_id = None if path.exists() and not path.is_dir() else _packed_id(name)
+    return route_id, path if route_id is None else _packed_file(route_id)
 
 
 def _packed_id(name: str) -> int | None:
