@@ -181,3 +181,29 @@ def test_recordings_are_compared_and_what_cannot_be_read_says_why(
     press(window, "Back")
     at(window, "Drive it yourself")
     assert console(window) == []
+
+
+def test_the_second_half_of_a_double_click_is_not_for_the_next_page(
+    address: str, window: Chrome
+) -> None:
+    window.get(f"{address}?p=13&language=en")
+    at(window, "Drive it yourself")
+    clicked = "dispatchEvent(new MouseEvent('click', {detail: 1, bubbles: true}))"
+    onward = "document.querySelector('.buttons button.main')"
+    window.execute_async_script("setTimeout(arguments[0], 600)")
+    window.execute_async_script(
+        f"""
+        const done = arguments[0];
+        new MutationObserver((_, observer) => {{
+          if ({onward}?.innerText === "I agree") {{
+            observer.disconnect();
+            {onward}.{clicked};
+            setTimeout(done, 600);
+          }}
+        }}).observe(document.body, {{ childList: true, subtree: true }});
+        {onward}.{clicked};
+        """
+    )
+    assert window.execute_script(f"return {onward}.innerText") == "I agree"
+    window.execute_script(f"{onward}.{clicked}")
+    at(window, "How do you drive?")

@@ -21,6 +21,9 @@ import { say } from "./words.js";
  * @property {Live | null} live null: there is no server to tell
  */
 
+// The second half of a double click is meant for the page before. Keys have no second half.
+const MEANT_MS = 500;
+
 /**
  * Show a page of text and buttons; its heading is focused, so that it is read out.
  * @param {App} app
@@ -44,7 +47,13 @@ export function showPage(app, heading, ...content) {
  * @returns {HTMLButtonElement}
  */
 export function button(text, act, kind = "") {
-  const made = element("button", { type: "button", class: kind || false, onclick: act }, text);
+  const made_ms = performance.now();
+  const onclick = (/** @type {MouseEvent} */ event) => {
+    if (event.detail === 0 || event.timeStamp > made_ms + MEANT_MS) {
+      act();
+    }
+  };
+  const made = element("button", { type: "button", class: kind || false, onclick }, text);
   return /** @type {HTMLButtonElement} */ (made);
 }
 
