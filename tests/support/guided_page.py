@@ -29,7 +29,8 @@ def at(window: Chrome, text: str) -> None:
 
 def press(window: Chrome, text: str) -> None:
     """Press the button with this text as soon as it is there."""
-    found = f"[...document.querySelectorAll('button')].find(one => one.innerText === {text!r})"
+    usable = "[...document.querySelectorAll('button:enabled')]"
+    found = f"{usable}.find(one => one.innerText === {text!r})"
     wait(window, f"!!{found}", PATIENCE_S)
     window.execute_script(f"{found}.click()")
 

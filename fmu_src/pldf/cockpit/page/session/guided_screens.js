@@ -94,17 +94,20 @@ function rest(session) {
   return new Promise((resolve) => {
     const left = element("p", { class: "countdown", role: "timer" });
     const next = button(say("next"), () => over("rested"), "main");
+    const early = button(say("break_early"), () => over("rested"));
     const stop = button(say("end_session"), () => over("stop"));
+    const all = buttons(next, early, stop);
     const text = element("p", {}, say("break_text"));
-    showPage(session.app, say("break_title"), progress(session), text, left, buttons(next, stop));
+    showPage(session.app, say("break_title"), progress(session), text, left, all);
     const timer = setInterval(() => tick(), 500);
     const tick = () => {
       const left_s = Math.ceil((ends_ms - Date.now()) / 1000);
       fill(left, left_s > 0 ? say("break_left", clock(left_s)) : say("break_over"));
+      next.disabled = left_s > 0;
+      early.hidden = left_s <= 0;
     };
     const over = (/** @type {"rested" | "stop"} */ event) => {
-      next.disabled = true; // a second click must not end what comes next
-      stop.disabled = true;
+      all.remove(); // a second click must not end what comes next
       clearInterval(timer);
       const left_s = Math.round((ends_ms - Date.now()) / 1000);
       if (left_s > 0 && event === "rested") {
