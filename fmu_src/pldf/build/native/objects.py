@@ -20,8 +20,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from importlib import metadata
 from pathlib import Path
 from types import FunctionType
@@ -33,11 +33,13 @@ import numba
 from ...cache import user_cache
 from ...compiled import OPTIONS, compile_modules, pack
 from ...cosim.platforms import COMPILED, WASM
-from ...files.disk import replace_file
+from ...errors import ModelError
+from ...files.disk import folder_lock, replace_file
 from .symbols import needed_by_object
 
 # What LLVM may call in place of a loop or an instruction that the target lacks (bzero: macOS).
 LIBRARY: Final = frozenset({"__bzero", "bzero", "floor", "memcpy", "memmove", "memset", "sqrt"})
+_PATIENCE_S: Final = 1200.0
 _TEXTS: Final = (
     "llvm.gz"  # the entry points in LLVM's assembly language, before any target's passes
 )
@@ -54,25 +56,41 @@ def compile_objects(model: str, targets: Sequence[str]) -> dict[str, bytes]:
         ValueError: numba or the check refuses the kernel; the text says where, if numba does.
     """
     cache = user_cache() / f"native-{_digest(model)}"
-    kept = {target: cache / f"{target}.o" for target in targets}
-    objects = {target: path.read_bytes() for target, path in kept.items() if path.is_file()}
-    missing = [target for target in targets if target not in objects]
-    if not missing:
-        return objects
+    with _alone_in(cache):
+        objects = {
+            target: path.read_bytes()
+            for target in targets
+            if (path := cache / f"{target}.o").is_file()
+        }
+        missing = [target for target in targets if target not in objects]
+        made = _made(missing, model, cache) if missing else {}
+        with suppress(OSError):  # compiled anew next time: slower, not wrong
+            for name, data in made.items():
+                replace_file(cache / name, data)
+    return {**objects, **{target: made[f"{target}.o"] for target in missing}}
+
+
+@contextmanager
+def _alone_in(cache: Path) -> Iterator[None]:
+    """Let others wait who would do the same work, and then find it done."""
+    with ExitStack() as held:
+        with suppress(OSError, ModelError):  # then it is done twice
+            cache.mkdir(parents=True, exist_ok=True)
+            held.enter_context(folder_lock(cache, _PATIENCE_S))
+        yield
+
+
+def _made(targets: Sequence[str], model: str, cache: Path) -> dict[str, bytes]:
+    """Compile for these targets; return objects, and what they are made of, by name of the file."""
     with tempfile.TemporaryDirectory(prefix="native_") as temporary:
         folder = Path(temporary)
         with suppress(OSError):  # what all targets have in common, and what takes longest
             shutil.copy(cache / _TEXTS, folder)
         # A process each: LLVM makes another object of x86-64 once it has made one of WebAssembly.
-        for group in ([t for t in missing if t != WASM], [t for t in missing if t == WASM]):
+        for group in ([t for t in targets if t != WASM], [t for t in targets if t == WASM]):
             if group:
                 _compile(model, folder, group)
-        made = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
-    with suppress(OSError):  # compiled anew next time: slower, not wrong
-        cache.mkdir(parents=True, exist_ok=True)
-        for name, data in made.items():
-            replace_file(cache / name, data)
-    return {**objects, **{target: made[f"{target}.o"] for target in missing}}
+        return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
 def _compile(model: str, folder: Path, targets: Sequence[str]) -> None:
