@@ -24,6 +24,7 @@ class Compiler:
         self.let_go.set()
 
     def compile(self, model: str, folder: Path, targets: Sequence[str]) -> None:
+        """Do as ``objects._compile``, once it may."""
         self.let_go.wait(60.0)
         self.asked.append(tuple(targets))
         if not (folder / "llvm.gz").exists():
