@@ -109,6 +109,7 @@ def test_a_reload_and_a_stop_lose_nothing(address: str, window: Chrome, folder: 
     press(window, "Stop")
     press(window, "I feel unwell")
     at(window, "The drive ended early")
+    wait(window, "document.body.innerText.includes('Reason: I feel unwell')")
     press(window, "End the session")
     at(window, "The session was stopped")
     window.refresh()
@@ -179,6 +180,7 @@ def test_a_number_is_one_person_in_one_window(address: str, window: Chrome, fold
     assert not list(folder.glob("sessions/*Anna*")) + list(folder.glob("sessions/VP*"))
     window.close()
     window.switch_to.window(first)
+    assert window.title == "Selbst fahren"
     press(window, "Ich stimme nicht zu")
     at(window, "Danke")
     kept = record(folder, "P05")

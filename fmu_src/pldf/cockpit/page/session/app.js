@@ -35,6 +35,7 @@ export function showPage(app, heading, ...content) {
   const title = element("h1", { tabindex: -1 }, heading);
   const page = element("div", { class: "page" }, title, ...content);
   fill(app.root, page);
+  document.title = say("title");
   scrollTo(0, 0);
   title.focus();
   return page;

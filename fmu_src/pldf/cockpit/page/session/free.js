@@ -9,6 +9,7 @@ import { language } from "../language.js";
 import { button, buttons, showPage, showProblem } from "./app.js";
 import { calibrationOf, inputsOf } from "./devices.js";
 import { drive } from "./drive_screen.js";
+import { reasonText } from "./pause_dialog.js";
 import { driveSetup } from "./setup.js";
 import { browserStorage, memoryStorage } from "./storage.js";
 import { say } from "./words.js";
@@ -160,7 +161,7 @@ function afterwards(app, setup, result, learned) {
     const page = showPage(
       app,
       say(early ? "ended_early" : "after_title"),
-      early && element("p", {}, say("ended_early_why", { reason: early })),
+      early && element("p", {}, say("ended_early_why", { reason: reasonText(early) })),
       buttons(
         button(say("drive_again_learned"), () => end(true), "main"),
         button(say("home"), () => end(false)),

@@ -8,6 +8,7 @@ import { element } from "../dom.js";
 import { keepRecord, learnedFiles, otherWithNumber, publishProfiles, readRecord } from "./keeping.js";
 import { newRecord, noted } from "./record.js";
 import { patiently } from "./patiently.js";
+import { reasonText } from "./pause_dialog.js";
 import { readSettings } from "./settings.js";
 import { screenOf } from "./guided_screens.js";
 import { language } from "../language.js";
@@ -178,7 +179,7 @@ export class Session {
       say(declined ? "thanks_title" : "stopped_title"),
       [
         element("p", {}, text),
-        reason ? element("p", {}, say("ended_early_why", { reason })) : null,
+        reason ? element("p", {}, say("ended_early_why", { reason: reasonText(reason) })) : null,
         declined ? null : element("p", {}, say("unwell")),
       ],
       [

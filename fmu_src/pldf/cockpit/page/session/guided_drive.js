@@ -11,11 +11,12 @@ import { keepDrive, learnedFiles } from "./keeping.js";
 import { keysTable } from "./keys_table.js";
 import { language } from "../language.js";
 import { patiently } from "./patiently.js";
+import { reasonText } from "./pause_dialog.js";
 import { progress } from "./progress.js";
 import { driveSetup, planned, practiceSetup } from "./setup.js";
 import { shownBy } from "./settings.js";
 import { settingsForm } from "./settings_form.js";
-import { ASKED_FOR, withAttempt, withEnding } from "./record.js";
+import { withAttempt, withEnding } from "./record.js";
 import { say } from "./words.js";
 import { say as sayDrive } from "./drive_words.js";
 
@@ -36,7 +37,7 @@ export async function driveStep(session) {
   session.inputs = inputs;
   const choice = await introduced(session);
   if (choice === "stop") {
-    return { event: "stop", reason: ASKED_FOR };
+    return { event: "stop", reason: "" };
   }
   if (choice === "device") {
     session.inputs = null;
@@ -214,7 +215,7 @@ async function stored(session, { result, frames }) {
  */
 async function endedEarly({ app }, reason) {
   const content = [
-    element("p", {}, say("ended_early_why", { reason })),
+    element("p", {}, say("ended_early_why", { reason: reasonText(reason) })),
     element("p", {}, say("unwell")),
   ];
   const event = await choose(app, say("ended_early"), content, [

@@ -7,7 +7,7 @@ import { chooseDevice } from "./device_screen.js";
 import { driveStep } from "./guided_drive.js";
 import { handOut } from "./hand_out.js";
 import { fromJson, toJson } from "./saved.js";
-import { ASKED_FOR, noted, withAnswers } from "./record.js";
+import { noted, withAnswers } from "./record.js";
 import { progress } from "./progress.js";
 import { learnedPanel } from "./see_learned.js";
 import { say } from "./words.js";
@@ -113,7 +113,7 @@ function rest(session) {
       if (left_s > 0 && event === "rested") {
         session.record = noted(session.record, `break ended ${left_s} s early`, now());
       }
-      resolve({ event, reason: event === "stop" ? ASKED_FOR : "" });
+      resolve({ event, reason: "" });
     };
     tick();
   });

@@ -18,6 +18,16 @@ const REASONS = /** @type {const} */ ({
 });
 const NAMES = /** @type {(keyof typeof REASONS)[]} */ (Object.keys(REASONS));
 
+/**
+ * Return a reason of the data in words; what somebody else wrote as it is.
+ * @param {string} reason
+ * @returns {string}
+ */
+export function reasonText(reason) {
+  const name = NAMES.find((one) => REASONS[one] === reason);
+  return name ? sayPage(`reason_${name}`) : reason;
+}
+
 export class PauseDialog {
   /**
    * @param {object} does

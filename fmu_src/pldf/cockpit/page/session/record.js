@@ -59,9 +59,6 @@
  * @property {Note[]} notes
  */
 
-/** Why a session stops that a person ends between two drives. */
-export const ASKED_FOR = "asked for by the person";
-
 /**
  * @param {Participant} who
  * @param {{version: string, study: string, language: Language, browser: string, screen: string}} about
