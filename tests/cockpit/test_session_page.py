@@ -137,7 +137,7 @@ def test_answers_survive_a_reload_and_what_is_missing_is_shown(
     window.refresh()
     at(window, only)
     press(window, "Continue")
-    wait(window, "document.body.innerText.includes('8 answers are missing')")
+    wait(window, "document.body.innerText.includes('Still to answer or to correct: 8')")
     wrong = "[...document.querySelectorAll('fieldset.wrong')].map(one => one.dataset.item)"
     told = window.execute_script(f"return {wrong}")
     assert told == [f"laan_{number}" for number in (1, 2, 4, 5, 6, 7, 8, 9)]

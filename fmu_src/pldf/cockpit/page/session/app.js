@@ -70,14 +70,15 @@ export function buttons(...buttons) {
  * @param {string} heading
  * @param {(Node | string | null | false)[]} content
  * @param {{text: string, choice: T, kind?: string}[]} choices
+ * @param {Node[]} below the buttons
  * @returns {Promise<T>}
  */
-export function choose(app, heading, content, choices) {
+export function choose(app, heading, content, choices, below = []) {
   return new Promise((resolve) => {
     const offered = choices.map(({ text, choice, kind }) =>
       button(text, () => resolve(choice), kind ?? ""),
     );
-    showPage(app, heading, ...content, buttons(...offered));
+    showPage(app, heading, ...content, buttons(...offered), ...below);
   });
 }
 

@@ -54,6 +54,14 @@ export function comparePlot(parent, length_m, recordings, profiles, unit) {
 }
 
 /**
+ * Return how a profile is called beside its line: of driver-000007_route-92a6126a3ee130f8.pldf the number.
+ * @param {string} name of the file
+ */
+function shortName(name) {
+  return name.replace(/^driver-0*(\d+)_route-.*$/, "$1").replace(/\.pldf$/, "");
+}
+
+/**
  * @param {string} name
  * @param {Profile} profile
  * @param {number[]} places_m
@@ -66,7 +74,7 @@ function profileLines(name, profile, places_m, unit) {
   const values = (column) =>
     places_m.map((s_m) => (s_m < column.length ? inUnit(column[s_m] ?? 0, unit) : null));
   return [
-    { label: `${name} ${say("learned")}`, values: values(columnOf(newest, "learned_mps")), dashed: false },
-    { label: `${name} ${say("base")}`, values: values(columnOf(newest, "base_mps")), dashed: true },
+    { label: `${shortName(name)}, ${say("learned")}`, values: values(columnOf(newest, "learned_mps")), dashed: false },
+    { label: `${shortName(name)}, ${say("base")}`, values: values(columnOf(newest, "base_mps")), dashed: true },
   ];
 }

@@ -60,7 +60,8 @@ function offered(app) {
     };
     const timer = setInterval(look, LOOK_MS);
     look();
-    const keys = element("div", {}, element("h2", {}, say("keys_title")), keysTable());
+    const steered = app.settings.steering === "person";
+    const keys = element("div", {}, element("h2", {}, say("keys_title")), keysTable(steered, true));
     showPage(app, say("device_title"), element("p", {}, say("device_text")), list, keys);
   });
 }

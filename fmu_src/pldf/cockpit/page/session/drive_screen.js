@@ -77,7 +77,7 @@ class DriveScreen {
       changed: () => this.scene.set(app.settings),
     });
     const steered = options.setup.steering === "person";
-    const keys = element("div", { class: "drive-keys" }, keysTable(steered));
+    const keys = element("div", { class: "drive-keys" }, keysTable(steered, options.teaches));
     this.keys = keys;
     this.keys.hidden = !options.shows_keys;
     const bottom = element("div", { class: "drive-bottom" }, cluster, words);

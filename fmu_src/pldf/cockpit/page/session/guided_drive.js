@@ -105,15 +105,23 @@ function introduced(session) {
       element("p", { class: "task" }, task),
       record.explanation === "text" && element("p", {}, say("explained_text")),
       element("p", { class: "unwell" }, say("unwell")),
-      folded(sayDrive("keys_title"), keysTable(app.bundle.plan.steering === "person"), practises),
-      folded(sayDrive("settings"), settingsForm(app.settings, { study: true }), false),
     ],
     [
       { text: say("start_drive"), choice: /** @type {const} */ ("start"), kind: "main" },
       { text: sayDrive("change_device"), choice: /** @type {const} */ ("device") },
       { text: say("end_session"), choice: /** @type {const} */ ("stop") },
     ],
+    [
+      folded(sayDrive("keys_title"), keysOf(session), practises),
+      folded(sayDrive("settings"), settingsForm(app.settings, { study: true }), false),
+    ],
   );
+}
+
+/** @param {Session} session */
+function keysOf({ app, step }) {
+  const teaches = step.kind === "drive" && planned(app.bundle, step.name).learn;
+  return keysTable(app.bundle.plan.steering === "person", teaches);
 }
 
 /**

@@ -75,7 +75,8 @@ async function questionnaire(session) {
   }
   const key = `pldf-cockpit draft ${record.participant} ${step.id}`;
   const drafted = /** @type {Answers} */ (fromJson(key));
-  const answers = await askQuestionnaire(app, asked, (draft) => toJson(key, draft), drafted);
+  const draft = (/** @type {Answers} */ answers) => toJson(key, answers);
+  const answers = await askQuestionnaire(app, asked, progress(session), draft, drafted);
   const given = { after: step.after, questionnaire: asked.id, at: now(), answers };
   session.record = withAnswers(session.record, given);
   toJson(key, {});
@@ -139,7 +140,7 @@ async function thanks(session) {
     app,
     app.bundle.plan.title,
     laboratoryText(app.bundle.pages.thanks),
-    element("p", {}, say("finished")),
+    element("p", { class: zip && "notice" }, say(zip ? "finished_here" : "finished")),
     zip && element("p", {}, say("hand_out_hint")),
     buttons(zip, session.record.learned_after && see, away),
     panel,

@@ -17,6 +17,8 @@ import { say } from "./words.js";
 /** @typedef {import("../language.js").Language} Language */
 /** @typedef {import("./app.js").App} App */
 
+const CURVES = 1.15;
+
 /** @param {App} app */
 export function home(app) {
   const back = () => home(app);
@@ -31,7 +33,7 @@ export function home(app) {
       { class: "cards" },
       card(
         "drive_at_once",
-        element("p", {}, say("drive_at_once_hint")),
+        element("p", {}, say("drive_at_once_hint", { minutes: minutesOf(app) })),
         button(say("drive_at_once"), () => void driveFreely(app, back), "main"),
       ),
       card(
@@ -66,6 +68,13 @@ export function card(heading, ...content) {
   return element("section", { class: "card" }, element("h2", {}, say(heading)), ...content);
 }
 
+/** How long a drive takes at the limits, and a little more for curves. @param {App} app */
+function minutesOf({ road, bundle }) {
+  const driven = road.limit_mps.slice(0, Math.ceil(bundle.plan.end_m));
+  const at_limits_s = driven.reduce((sum, limit_mps) => sum + 1 / limit_mps, 0);
+  return Math.max(1, Math.round((CURVES * at_limits_s) / 60));
+}
+
 /** @param {App} app */
 function languages(app) {
   const all = /** @type {[Language, string][]} */ (Object.entries(LANGUAGES));
@@ -89,7 +98,7 @@ function takePart(app) {
   const order = /** @type {HTMLSelectElement} */ (
     element(
       "select",
-      { name: "order" },
+      { name: "order", "aria-label": say("order") },
       element("option", { value: "" }, say("order_plan")),
       ...["AB", "BA"].map((one) => element("option", { value: one }, one)),
     )
@@ -106,7 +115,7 @@ function takePart(app) {
     "form",
     { onsubmit: submit },
     element("label", {}, say("pseudonym"), field),
-    element("label", {}, say("order"), order),
+    element("details", {}, element("summary", {}, say("order")), order),
     problem,
     element("button", { class: "main" }, say("begin")),
   );

@@ -17,11 +17,13 @@ const ROWS = [
 ];
 
 /**
- * @param {boolean} [steered] the person steers
+ * @param {boolean} steered the person steers
+ * @param {boolean} teaches the driver's last word is offered
  * @returns {HTMLElement}
  */
-export function keysTable(steered = true) {
-  const rows = ROWS.filter(([, word]) => steered || word !== "key_steer").map(([keys, word]) =>
+export function keysTable(steered, teaches) {
+  const idle = [!steered && "key_steer", !teaches && "key_teach"];
+  const rows = ROWS.filter(([, word]) => !idle.includes(word)).map(([keys, word]) =>
     element(
       "tr",
       {},

@@ -17,11 +17,12 @@ const TEXT_MAX = 5000;
  * Ask a questionnaire.
  * @param {App} app
  * @param {Questionnaire} asked
+ * @param {HTMLElement} place where in the session this is
  * @param {(answers: Answers) => void} drafted told every change, so that a reload loses nothing
  * @param {Answers} [before] answers given so far
  * @returns {Promise<Answers>}
  */
-export function askQuestionnaire(app, asked, drafted, before = {}) {
+export function askQuestionnaire(app, asked, place, drafted, before = {}) {
   return new Promise((resolve) => {
     const form = new Form(asked.items, { ...before }, drafted);
     const done = () => {
@@ -33,6 +34,7 @@ export function askQuestionnaire(app, asked, drafted, before = {}) {
     showPage(
       app,
       asked.title[language()],
+      place,
       ...paragraphs(asked.intro[language()]),
       form.list,
       form.told,
