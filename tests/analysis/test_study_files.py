@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pldf.analysis.analysis import Analysis, analyse
+from pldf.analysis.checks.files import Known, check_file
+from pldf.analysis.checks.folder import with_copies
 from pldf.analysis.problems import StudyError
 from pldf.analysis.study_folder import StudyFolder
 from pldf.cli import main
@@ -205,3 +207,21 @@ def test_files_and_drives_that_count_nowhere_are_told(
     table(only)
     assert main(["analyse", str(only), "--report", str(only / "report.html")]) == 0
     assert "no road was named, so the report shows the study road" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("gas", "copies"), [(0.0, 0), (0.2, 1)])
+def test_equal_drives_are_copies_unless_nobody_did_anything(
+    tmp_path: Path, gas: float, copies: int
+) -> None:
+    time = 0.1 * np.arange(101.0)
+    columns = {
+        "time_s": time, "s_m": 20.0 * time, "speed_mps": 20.0 + 0.0 * time,
+        "mode": np.full(101, float(ACTIVE)), "gas_pedal": np.full(101, gas),
+        "brake_pedal": 0.0 * time, "set_speed_offset_mps": 0.0 * time,
+    }  # fmt: skip
+    paths = [tmp_path / f"{who}_A3.csv" for who in ("P1", "P2")]
+    for path in paths:
+        write_recording(path, Recording(columns))
+    files = list(with_copies([check_file(path, Known()) for path in paths]))
+    told = [one for file in files for one in file.findings if "under another name" in one.text]
+    assert len(told) == copies

@@ -108,6 +108,7 @@ def test_nothing_is_written_outside(tmp_path: Path, name: str) -> None:
     [
         ({"recordings/P07_A1.csv": b"other"}, "another one than in the files before"),
         ({"questionnaire.csv": b"a,c\n1,2\n"}, "has other columns"),
+        ({"road.csv": b"other"}, "of another road"),
         ({"session.json": b"[]"}, "session.json"),
         ({"session.json": b"{"}, "session.json"),
     ],
@@ -119,6 +120,7 @@ def test_files_that_contradict_each_other(
         "recordings/P07_A1.csv": b"x",
         "questionnaire.csv": b"a,b\n1,2\n",
         "session.json": b'{"sessions": []}',
+        "road.csv": b"s_m",
     }
     paths = [zipped(tmp_path / "1.zip", first), zipped(tmp_path / "2.zip", files)]
     with pytest.raises(ModelError, match=rf"2\.zip: .*{problem}"):

@@ -18,7 +18,7 @@ from pldf.cockpit.wasm_models import WasmModel
 from pldf.cosim.fmu import Fmu
 from pldf.cosim.master import connections
 from pldf.cosim.prepared import prepared_route
-from pldf.roads import packed_route
+from pldf.roads import fingerprint, packed_route, read_route
 from pldf.route_facts import route_facts
 from pldf.study.phases import TRAFFIC
 
@@ -95,6 +95,13 @@ def test_the_road_is_the_one_that_the_fmus_read(told: dict[str, Any]) -> None:
     assert base64.b64decode(told["road"]["prepared"]) == prepared_route(road)
     assert told["plan"]["end_m"] == road.nodes - 1.0
     assert told["plan"]["practice_end_m"] == told["plan"]["end_m"]
+
+
+def test_study_file_and_road_lie_beside_the_data(told: dict[str, Any], tmp_path: Path) -> None:
+    beside = {name: base64.b64decode(text) for name, text in told["beside"].items()}
+    assert beside["cockpit.toml"] == STUDY.encode()
+    (tmp_path / "road.csv").write_bytes(beside["road.csv"])
+    assert fingerprint(read_route(tmp_path / "road.csv")) == fingerprint(packed_route(0))
 
 
 def test_a_drive_sets_what_the_study_says(told: dict[str, Any]) -> None:

@@ -69,6 +69,7 @@ def test_a_session_without_server_and_network(
     (session,) = json.loads((folder / "session.json").read_text(encoding="utf-8"))["sessions"]
     assert session["finished"]
     both = [handed_out, as_somebody_else(handed_out)]
+    assert {"cockpit.toml", "road.csv"} <= {path.name for path in folder.iterdir()}
     never = [f"--without=P0{who}_{phase}" for who in (1, 2) for phase in ("A1", "B2")]
     assert main(["analyse", *map(str, both), *never]) == 0, capsys.readouterr().err
     assert "means of 2 participants" in capsys.readouterr().out

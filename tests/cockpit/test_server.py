@@ -38,7 +38,7 @@ BUNDLE = {
 
 
 def client(folder: Path, bind: str = "127.0.0.1") -> TestClient:
-    app = application(Cockpit(json.dumps(BUNDLE).encode(), folder, "", bind, TOKEN))
+    app = application(Cockpit(json.dumps(BUNDLE).encode(), folder, bind, TOKEN))
     return TestClient(app, base_url=HERE, follow_redirects=False)
 
 

@@ -127,20 +127,20 @@ def test_shared_tables_are_replaced_by_who_has_read_them(tmp_path: Path) -> None
     assert (tmp_path / "questionnaire.csv").read_bytes() == b"both"
 
 
-def test_the_study_file_lies_beside_the_data(tmp_path: Path) -> None:
+def test_study_file_and_road_lie_beside_the_data(tmp_path: Path) -> None:
     root = tmp_path / "laboratory"
-    first = Folder(root, "title = 'one'\n")
+    first = Folder(root, {"cockpit.toml": b"one", "road.csv": b"road"})
     assert not first.of_another_study
     assert not root.exists()
     for _ in range(2):
         first.write("recordings/P07_A1.csv", b"x")
-    assert (root / "cockpit.toml").read_text() == "title = 'one'\n"
-    second = Folder(root, "title = 'two'\n")
+    assert (root / "cockpit.toml").read_bytes() == b"one"
+    second = Folder(root, {"cockpit.toml": b"two", "road.csv": b"road"})
     assert second.of_another_study
     second.write("recordings/P07_A2.csv", b"x")
     assert not second.of_another_study
-    assert (root / "cockpit.toml").read_text() == "title = 'two'\n"
-    assert (root / "earlier" / "cockpit-1.toml").read_text() == "title = 'one'\n"
+    assert (root / "cockpit.toml").read_bytes() == b"two"
+    assert [path.name for path in (root / "earlier").iterdir()] == ["cockpit-1.toml"]
 
 
 def test_neither_nothing_nor_too_much_is_stored(

@@ -94,7 +94,7 @@ def test_another_address_and_another_study_are_told(fmu_folder: Path, tmp_path: 
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=30)
     assert "--bind 0.0.0.0: whoever is in this network and has the address" in err
-    assert "was begun with another study file (cockpit.toml there)" in err
+    assert "was begun with another study file or road (cockpit.toml, road.csv)" in err
     assert (tmp_path / "cockpit.toml").read_text() == "title = 'another'"
 
 

@@ -31,6 +31,8 @@ from .questionnaires import SurveyMap, survey_map
 
 Seen = Callable[[Path, Recording], None]
 
+# The road that was driven, if the folder has it: a cockpit leaves it there.
+OWN_ROAD: Final = "road.csv"
 SYSTEMS: Final = ("A", "B")
 
 # What says of a drive what the function had learned before.

@@ -16,6 +16,8 @@ SUFFIX: Final = ".zip"
 # Lies in a folder that was unpacked, and says from what: such a folder may be unpacked anew.
 MARK: Final = "unpacked.txt"
 SESSIONS: Final = "session.json"
+# What has rows of several people.
+_TABLES: Final = ("answers.csv", "exclusions.csv", "questionnaire.csv")
 _TOGETHER: Final = "unpacked"  # the folder of several
 _NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9_./-]*")
 _WHOLE_MAX: Final = 4_000_000_000  # bytes, unpacked
@@ -78,11 +80,16 @@ def _add(whole: dict[str, bytes], more: Mapping[str, bytes], path: Path) -> None
         before = whole.get(name, data)
         if before == data:
             whole[name] = data
-        elif "/" not in name and (join := _join_of(name)):
+        elif join := _join_of(name):
             try:
                 whole[name] = join(before, data)
             except (ValueError, KeyError, TypeError) as problem:
                 raise ModelError(f"{path}: {name}: {problem}") from None
+        elif "/" not in name:
+            raise ModelError(
+                f"{path}: {name} is another one than in the files before, of another study or "
+                "of another road; analyse them apart"
+            )
         else:
             raise ModelError(
                 f"{path}: {name} is another one than in the files before; two people had one "
@@ -93,7 +100,7 @@ def _add(whole: dict[str, bytes], more: Mapping[str, bytes], path: Path) -> None
 def _join_of(name: str) -> Callable[[bytes, bytes], bytes] | None:
     if name == SESSIONS:
         return _joined_sessions
-    return _joined_tables if name.endswith(".csv") else None
+    return _joined_tables if name in _TABLES else None
 
 
 def _joined_tables(first: bytes, second: bytes) -> bytes:

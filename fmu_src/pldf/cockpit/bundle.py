@@ -14,11 +14,13 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 from .. import __version__, hmi_texts
+from ..analysis.study_folder import OWN_ROAD
 from ..cosim.fmu import Fmu, described
 from ..cosim.kinds import PARTS_IN_TRAFFIC
 from ..cosim.master import connections
 from ..cosim.values import Value, Values
 from ..kernel.signals import Signal
+from ..roads import Route, write_route_csv
 from ..study.participants import DRIVER_SIGNALS, Participant, StudySettings, order_of
 from ..study.phases import TRAFFIC, DriveSetting, Phase, seed_of_drive, values_of
 from .desk_study import DeskStudy, read_desk_study
@@ -30,6 +32,8 @@ from .wasm_models import WasmModel, wasm_models
 
 Announce = Callable[[str], None]
 
+# What the study file is called beside the data.
+STUDY: Final = "cockpit.toml"
 # Where the page puts the road among the files of each FMU.
 ROAD_FILE: Final = "road.prepared"
 _KINDS: Final = {"Enumeration": "Integer"}
@@ -61,8 +65,17 @@ def bundle(desk: DeskStudy, language: str = "", announce: Announce = print) -> d
         "texts": json.loads(hmi_texts.as_json()),
         "pages": desk.pages,
         "questionnaires": desk.questionnaires,
+        "beside": {STUDY: desk.study.source.encode(), OWN_ROAD: _road_csv(road.route)},
     }
     return dict(plain(made))
+
+
+def _road_csv(route: Route) -> bytes:
+    """Return the road as a file from which the analysis reads it again to the bit."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder, OWN_ROAD)
+        write_route_csv(route, path)
+        return path.read_bytes()
 
 
 def _fmu(model: WasmModel) -> Fmu:

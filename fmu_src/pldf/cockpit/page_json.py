@@ -23,3 +23,8 @@ def plain(value: Any) -> Any:
     if isinstance(value, Iterable) and not isinstance(value, str):
         return [plain(inner) for inner in value]
     return value
+
+
+def beside_data(told: Mapping[str, Any]) -> dict[str, bytes]:
+    """Return the files that a bundle wants to lie beside the data, by name."""
+    return {name: base64.b64decode(text) for name, text in told.get("beside", {}).items()}

@@ -27,7 +27,7 @@ from .cluster_message import require_frame, shown_variables
 from .dropped_road import ROAD_MAX, dropped_road
 from .guard import LOOPBACK, Guard
 from .live import MESSAGE_MAX, Live, checked
-from .page_json import plain
+from .page_json import beside_data, plain
 from .storage import FILE_MAX, NOT_THERE, Folder, Refused
 
 PAGE: Final = Path(__file__).parent / "page"
@@ -48,14 +48,12 @@ class Cockpit:
     Attributes:
         bundle: the bundle as JSON.
         folder: where the study's files go.
-        study: text of the study file, which is left there.
         bind: address to listen at.
         token: first part of every address.
     """
 
     bundle: bytes
     folder: Path
-    study: str = ""
     bind: str = "127.0.0.1"
     token: str = field(default_factory=lambda: secrets.token_urlsafe(16))
 
@@ -118,8 +116,9 @@ class _Desk:
     def __init__(self, cockpit: Cockpit) -> None:
         self.live = Live()
         self._bundle = cockpit.bundle
-        self._shown = shown_variables(json.loads(cockpit.bundle))
-        self._folder = Folder(cockpit.folder, cockpit.study)
+        told = json.loads(cockpit.bundle)
+        self._shown = shown_variables(told)
+        self._folder = Folder(cockpit.folder, beside_data(told))
 
     async def bundle(self, _: Request) -> Response:
         return Response(self._bundle, media_type="application/json")

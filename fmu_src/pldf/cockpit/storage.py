@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from http import HTTPStatus
 from pathlib import Path
@@ -19,7 +20,6 @@ from ..files.disk import folder_lock, free_name, read_file, replace_file
 # A drive of an hour at 100 rows a second and 200 bytes a row is 72 MB.
 FILE_MAX: Final = 100_000_000
 EARLIER: Final = "earlier"
-STUDY: Final = "cockpit.toml"
 # What may lie in the folder: text behind a name, such as recordings/P07_A1.csv.
 _FOLDERS: Final = {
     "recordings": ".csv",
@@ -62,16 +62,19 @@ class Folder:
         OSError: the disk refuses.
     """
 
-    def __init__(self, root: Path, study: str = "") -> None:
-        """Use ``root``, which need not be there yet; it gets ``study``, the text of its file."""
+    def __init__(self, root: Path, beside: Mapping[str, bytes] | None = None) -> None:
+        """Use ``root``, which need not be there yet; it gets the files ``beside`` the data."""
         self.root = root
-        self._study = study.encode()
+        self._beside = beside or {}
 
     @property
     def of_another_study(self) -> bool:
-        """Whether the folder was begun with another study file."""
-        place = self.root / STUDY
-        return bool(self._study) and place.is_file() and place.read_bytes() != self._study
+        """Whether the folder was begun with another study file, or on another road."""
+        return any(self._is_other(name) for name in self._beside)
+
+    def _is_other(self, name: str) -> bool:
+        place = self.root / name
+        return place.is_file() and place.read_bytes() != self._beside[name]
 
     def read(self, path: str) -> Stored | None:
         """Return a file; None if there is none."""
@@ -101,7 +104,7 @@ class Folder:
                 self._keep(path, before.data, data)
             place.parent.mkdir(parents=True, exist_ok=True)
             replace_file(place, data)
-            self._note_study()
+            self._leave_beside()
         return _mark(data)
 
     def list(self, prefix: str = "") -> list[str]:
@@ -121,13 +124,14 @@ class Folder:
         kept.parent.mkdir(parents=True, exist_ok=True)
         replace_file(free_name(kept.with_suffix(""), kept.suffix), before)
 
-    def _note_study(self) -> None:
-        """Leave the study file that the data belong to, and the one before."""
-        place = self.root / STUDY
-        if self.of_another_study:
-            self._keep_earlier(STUDY, place.read_bytes())
-        if self._study and (not place.exists() or self.of_another_study):
-            replace_file(place, self._study)
+    def _leave_beside(self) -> None:
+        """Leave study file and road that the data belong to, and those before."""
+        for name, data in self._beside.items():
+            place = self.root / name
+            if self._is_other(name):
+                self._keep_earlier(name, place.read_bytes())
+            if not place.exists() or self._is_other(name):
+                replace_file(place, data)
 
     def _place(self, path: str) -> Path:
         if _is_ours(path):

@@ -14,6 +14,7 @@ from rich.table import Table
 from ..analysis.analysis import RATES, Analysis
 from ..analysis.analysis_tables import write_tables
 from ..analysis.checks import Checks, analysed
+from ..analysis.checks.folder import with_road_beside
 from ..analysis.published import DRIVERS, TESTS, published_means
 from ..analysis.questionnaires import SCALES, Questionnaire
 from ..analysis.study_folder import StudyFolder
@@ -87,6 +88,7 @@ def run(options: argparse.Namespace) -> None:
     study = StudyFolder(
         options.folder, route, frozenset(options.without), chosen_map(options), options.profiles
     )
+    study = with_road_beside(study)
     with recordings_bar("read") as reading:
         analysis, checks = analysed(study, reading)
     answers = analysis.questionnaire.notes if analysis.questionnaire else ()

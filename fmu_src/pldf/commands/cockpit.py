@@ -9,7 +9,7 @@ import webbrowser
 from contextlib import suppress
 from math import nan
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from ..cockpit.desk_study import DESK, LANGUAGES, DeskStudy, read_desk_study
 from ..study.study_tables import FOV_MAX_DEG, FOV_MIN_DEG
@@ -72,28 +72,28 @@ def run(options: argparse.Namespace) -> None:
     told = bundle(desk, options.language, _announce)
     if options.fov is not None:
         told["plan"]["fov_deg"] = options.fov
-    made = as_json(told)
     if options.export:
         from ..cockpit.export import write_export  # noqa: PLC0415
 
-        write_export(options.export, made)
+        write_export(options.export, as_json(told))
         size_mb = options.export.stat().st_size / 1e6
         print(f"{options.export}: {size_mb:.1f} MB; open it in a browser, on any machine.")
         return
-    _serve(options, desk, made)
+    _serve(options, desk, told)
 
 
-def _serve(options: argparse.Namespace, desk: DeskStudy, made: bytes) -> None:
+def _serve(options: argparse.Namespace, desk: DeskStudy, told: dict[str, Any]) -> None:
     from ..cockpit.guard import LOOPBACK  # noqa: PLC0415 - as above
+    from ..cockpit.page_json import as_json, beside_data  # noqa: PLC0415
     from ..cockpit.server import Cockpit, listen, serve  # noqa: PLC0415
-    from ..cockpit.storage import STUDY, Folder  # noqa: PLC0415
+    from ..cockpit.storage import Folder  # noqa: PLC0415
 
     out = options.out or desk.study.out
-    cockpit = Cockpit(made, out, desk.study.source, options.bind)
-    if Folder(out, desk.study.source).of_another_study:
+    cockpit = Cockpit(as_json(told), out, options.bind)
+    if Folder(out, beside_data(told)).of_another_study:
         _announce(
-            f"{out}: was begun with another study file ({STUDY} there), or with this one before it "
-            "was changed; who begins now drives by the new one. A folder of its own: --out"
+            f"{out}: was begun with another study file or road ({', '.join(told['beside'])}); who "
+            "begins now drives by the new one. A folder of its own: --out"
         )
     with listen(options.bind) as listening:
         port = listening.getsockname()[1]

@@ -15,7 +15,7 @@ from ...findings import Finding
 from ...recordings.against_road import COVERAGE
 from ...recordings.mapping import MAP_FILE
 from ...recordings.recording import Recording
-from ...roads import route_arrays
+from ...roads import read_route, route_arrays
 from ...study.own_files import DRIVES, PARTICIPANTS, PROFILES, RECORDINGS, STUDY
 from ...study.study_file import read_study
 from ..analysis import Analysis, analyse
@@ -23,7 +23,7 @@ from ..exclusions import EXCLUSIONS
 from ..gathered import Reading
 from ..problems import StudyError, findings_of
 from ..questionnaires import SurveyMap
-from ..study_folder import StudyFolder
+from ..study_folder import OWN_ROAD, StudyFolder
 from .checked import CheckedFile, Checks
 from .files import Known, check_file, check_recording, checked_recording
 from .names import people
@@ -162,8 +162,21 @@ def _with(file: CheckedFile, finding: Finding) -> CheckedFile:
     return replace(file, findings=(*file.findings, finding))
 
 
+def with_road_beside(study: StudyFolder) -> StudyFolder:
+    """Return a study with the road that a cockpit left in its folder, if none was named.
+
+    Raises:
+        ModelError: it is no road any more.
+    """
+    path = study.folder / OWN_ROAD
+    if study.route is not None or not path.is_file():
+        return study
+    return replace(study, route=read_route(path))
+
+
 def with_own_road(study: StudyFolder) -> StudyFolder:
-    """Return a simulated study with the road of its study file, if none was named."""
+    """Return a study with the road in its folder or its study file, if none was named."""
+    study = with_road_beside(study)
     path = study.folder / STUDY
     if study.route is not None or not path.exists():
         return study

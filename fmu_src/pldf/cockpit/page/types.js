@@ -107,6 +107,7 @@
  * @property {HmiTexts} texts resources/hmi_texts.json
  * @property {Record<"welcome" | "consent" | "thanks", Record<Language, string>>} pages safe HTML made of Markdown
  * @property {Questionnaire[]} questionnaires
+ * @property {Files} beside study file and road, which lie beside the data
  */
 /** @typedef {Record<string, any>} HmiTexts */
 

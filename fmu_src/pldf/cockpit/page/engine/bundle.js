@@ -6,9 +6,11 @@
 /** @typedef {import("../types.js").Road} Road */
 /** @typedef {Omit<Model, "wasm" | "resources"> & {wasm: string, resources: Record<string, string>}} ModelAsTold */
 /** @typedef {Omit<Road, "prepared"> & {prepared: string}} RoadAsTold */
+/** @typedef {Record<string, string>} FilesAsTold */
 /**
  * A bundle as JSON tells it: bytes are base64.
- * @typedef {Omit<Bundle, "models" | "road"> & {models: Record<Part, ModelAsTold>, road: RoadAsTold}} BundleAsTold
+ * @typedef {Omit<Bundle, "models" | "road" | "beside"> & {models: Record<Part, ModelAsTold>, road: RoadAsTold,
+ *   beside?: FilesAsTold}} BundleAsTold
  */
 
 const IN_PAGE = "bundle";
@@ -39,7 +41,15 @@ export async function loadBundle() {
 export function decoded(told) {
   const models = Object.entries(told.models).map(([part, model]) => [part, withBytes(model)]);
   const road = { ...told.road, prepared: bytesOf(told.road.prepared) };
-  return { ...told, models: Object.fromEntries(models), road };
+  return { ...told, models: Object.fromEntries(models), road, beside: filesOf(told.beside) };
+}
+
+/**
+ * @param {FilesAsTold | undefined} texts base64 by path
+ * @returns {import("../types.js").Files}
+ */
+function filesOf(texts) {
+  return Object.fromEntries(Object.entries(texts ?? {}).map(([path, text]) => [path, bytesOf(text)]));
 }
 
 /**
@@ -47,8 +57,7 @@ export function decoded(told) {
  * @returns {Model}
  */
 function withBytes(model) {
-  const resources = Object.entries(model.resources).map(([path, text]) => [path, bytesOf(text)]);
-  return { ...model, wasm: bytesOf(model.wasm), resources: Object.fromEntries(resources) };
+  return { ...model, wasm: bytesOf(model.wasm), resources: filesOf(model.resources) };
 }
 
 /**

@@ -47,13 +47,14 @@ export function saveAs(name, bytes) {
 /**
  * Hand out all data.
  * @param {Storage} storage
+ * @param {Files} [beside] files that lie beside the data
  * @returns {Promise<number>} how many files there were
  */
-export async function handOut(storage) {
+export async function handOut(storage, beside = {}) {
   const files = await allFiles(storage);
   const count = Object.keys(files).length;
   if (count) {
-    saveAs("pldf-cockpit.zip", zipped(files));
+    saveAs("pldf-cockpit.zip", zipped({ ...beside, ...files }));
   }
   return count;
 }

@@ -157,7 +157,7 @@ function windows() {
 function data(app) {
   const told = element("p", { role: "status" });
   const out = async () => {
-    const count = await handOut(app.storage);
+    const count = await handOut(app.storage, app.bundle.beside);
     fill(told, !count && say("nothing_kept"));
   };
   const where = app.storage.kind === "memory" ? say("data_memory") : say("data_here");
