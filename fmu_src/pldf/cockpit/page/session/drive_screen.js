@@ -230,7 +230,7 @@ class DriveScreen {
     }
     clearTimeout(this.counting);
     this.paused = true;
-    this.times.interrupted();
+    this.times.interrupted(performance.now());
     fill(this.count);
     this.options.tell?.("paused", reason);
     this.dialog.open(reason, this.options.inputs);

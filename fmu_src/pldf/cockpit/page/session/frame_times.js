@@ -27,8 +27,12 @@ export class FrameTimes {
     this.over += Number(passed_ms > JERK_MS);
   }
 
-  /** What comes next is not counted against the last picture: the drive was paused. */
-  interrupted() {
+  /**
+   * The drive pauses: until now the last picture stood, and what comes next is not counted against it.
+   * @param {number} now_ms
+   */
+  interrupted(now_ms) {
+    this.drawn(now_ms);
     this.last_ms = NaN;
   }
 
