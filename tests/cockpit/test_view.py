@@ -164,6 +164,24 @@ def test_after_a_jump_all_is_there(window: webdriver.Chrome) -> None:
     assert window.execute_script(same)
 
 
+def test_a_drive_in_seconds_has_no_holes(window: webdriver.Chrome) -> None:
+    picture(window, 300.0)
+    holes = """ // There is no time at all to build in.
+        const now = performance.now.bind(performance);
+        performance.now = () => (globalThis.ticks = (globalThis.ticks ?? 0) + 1e4);
+        const missing = [];
+        for (let s_m = 400; s_m < 1500; s_m += 140) {
+          drawn(s_m);
+          for (let k = Math.floor(s_m / 100); k < Math.floor(s_m / 100) + 2; k++) {
+            if (!view.world.built.has(`piece ${k}`)) missing.push([s_m, k]);
+          }
+        }
+        performance.now = now;
+        return missing;
+    """
+    assert window.execute_script(holes) == []
+
+
 def test_the_other_camera_and_the_mirror(window: webdriver.Chrome) -> None:
     plain = picture(window, 300.0)
     window.execute_script("view.options.mirror = true; view.resize()")

@@ -15,6 +15,10 @@ const WIDTH_PX = 384;
 const HEIGHT_PX = 96;
 const SHARE = 0.24; // of the picture's width
 const ASIDE = 0.1;
+const TOP = 0.03;
+// In a narrow window it hangs below the buttons that the page has at the top.
+const NARROW_PX = 700;
+const BUTTONS_PX = 76;
 const FOV_DEG = 13; // upright
 const SIGHT_M = 2600; // as far as the sky
 const FRAME_SHARE = 0.05;
@@ -40,7 +44,8 @@ export class Mirror {
   resize(width, height) {
     const [w, h] = [SHARE, (SHARE * width * HEIGHT_PX) / WIDTH_PX / height];
     this.glass.scale.set(w, h, 1);
-    this.glass.position.set(0.5 + ASIDE * this.side, 1 - h / 2 - 0.03, 0.1);
+    const top = width < NARROW_PX ? BUTTONS_PX / height : TOP;
+    this.glass.position.set(0.5 + ASIDE * this.side, 1 - h / 2 - top, 0.1);
     this.frame.scale.set(w * (1 + FRAME_SHARE), h * (1 + 4 * FRAME_SHARE), 1);
     this.frame.position.set(this.glass.position.x, this.glass.position.y, 0);
   }

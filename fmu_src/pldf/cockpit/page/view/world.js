@@ -19,6 +19,7 @@ const FAR_M = 420;
 const BUILDING_MS = 4; // per frame: a drive must not stutter
 const STAYS_M = 2; // nothing new to be seen
 const JUMP_M = 150;
+const AT_ONCE_M = 250; // so near there is never a hole, however fast a drive is shown
 
 export class World {
   /** @param {RoadModel} road @param {number} anisotropy how sharp pictures are at a flat angle */
@@ -43,8 +44,8 @@ export class World {
   }
 
   /**
-   * Build what comes into sight around a place and drop what is out of it: what is near first, and
-   * for a few milliseconds at a time; all at once where nothing of it is there.
+   * Build what comes into sight around a place and drop what is out of it: what is near first, the
+   * rest for a few milliseconds at a time; all at once where nothing of it is there.
    * @param {number} s_m
    */
   surround(s_m) {
@@ -55,13 +56,18 @@ export class World {
     const keys = new Set(wanted.map((each) => each.key));
     for (const [key, built] of this.built) if (!keys.has(key)) this.#drop(key, built);
     const missing = wanted.filter(({ key, detail }) => this.built.get(key)?.detail !== detail);
-    for (const { key, detail, build } of missing.sort((a, b) => a.distance_m - b.distance_m)) {
-      if (performance.now() > until_ms) return; // the next frame goes on
+    let late = false;
+    for (const { key, detail, distance_m, build } of missing.sort((a, b) => a.distance_m - b.distance_m)) {
       const there = this.built.get(key);
+      const waits = there !== undefined || distance_m > AT_ONCE_M;
+      if (waits && performance.now() > until_ms) {
+        late = true; // the next frame goes on
+        continue;
+      }
       if (there) this.#drop(key, there);
       this.#keep(key, detail, build());
     }
-    this.around_m = s_m;
+    if (!late) this.around_m = s_m;
   }
 
   /** Put everything where it lies as seen from a point. @param {Origin} eye */
