@@ -23,6 +23,7 @@ StructT = TypeVar("StructT", bound=msgspec.Struct)
 
 _AT: Final = re.compile(r" - at (?:`key` in )?`\$\.?(?P<path>.*?)(\[(?:(?P<item>\d+)|\.\.\.)\])?`$")
 _UNKNOWN: Final = re.compile(r"contains unknown field `(.*?)`(?= - at `|$)")
+_MISSING: Final = re.compile(r"missing required field `(.*?)`")
 _HEADER: Final = re.compile(r"\s*\[\s*([^\[\]]+?)\s*\]\s*(#.*)?$")
 _ASSIGNMENT: Final = re.compile(r"\s*([^=#]+?)\s*=")
 _PART: Final = re.compile(r'"([^"]*)"|\'([^\']*)\'|([^.\s]+)')
@@ -100,6 +101,8 @@ class TomlFile:
         for name in names:
             declared, value = _fields(declared)[name], value[name]
         key = (*table, *names)
+        if missing := _MISSING.search(text):
+            self.fail((*key, missing[1]), "missing; it is needed")
         if unknown:
             self._unknown_here((*key, unknown[1]), declared, isinstance(value[unknown[1]], dict))
         if at and at["item"] and get_origin(declared) is not Annotated:

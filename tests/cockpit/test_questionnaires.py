@@ -133,6 +133,10 @@ title = "x"
 after = ["end"]
 [half.items]
 profile_1 = { text = "?" }
+[untitled]
+after = ["A"]
+[untitled.items]
+m = { kind = "choice", text = "?", options = [{ en = "?" }] }
 [none]
 title = "x"
 after = ["later"]
@@ -168,6 +172,8 @@ def test_all_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
         "mine.items.l: no text",
         "mine.items.i: two options have the same key",
         "profile_5, profile_6 is missing of the scale speed_profile",
+        "untitled.title: missing; it is needed",
+        "untitled.items.m.options.key: missing; it is needed",
         "none.items: no items",
         'none.after: ["later"] must be a list out of "A1"',
     ):

@@ -98,6 +98,17 @@ def test_another_address_and_another_study_are_told(fmu_folder: Path, tmp_path: 
     assert (tmp_path / "cockpit.toml").read_text() == "title = 'another'"
 
 
+def test_drives_that_nobody_can_compare_are_told_before_anybody_drives(
+    fmu_folder: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "my.toml").write_text('title = "Mine"\n[drives]\nphases = ["A1", "B1"]\n')
+    process = started(
+        fmu_folder, str(tmp_path / "my.toml"), "--export", str(tmp_path / "cockpit.html")
+    )
+    _, err = process.communicate(timeout=120)
+    assert "pldf: Mine: no drive A2, B2, and pldf analyse compares A1, A2, B1, B2" in err
+
+
 def test_it_writes_one_file(fmu_folder: Path, tmp_path: Path) -> None:
     path = tmp_path / "cockpit.html"
     process = started(fmu_folder, "--export", str(path), "--language", "de", "--fov", "95.5")

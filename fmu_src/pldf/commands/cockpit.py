@@ -23,6 +23,8 @@ EXAMPLE: Final = (
     "  pldf cockpit my_study.toml --export cockpit.html\n"
     "      one file that needs neither pldf nor network; then: pldf analyse pldf-cockpit.zip"
 )
+# The drives whose interventions are compared (docs/study-data.md).
+_COMPARED: Final = ("A1", "A2", "B1", "B2")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -69,6 +71,7 @@ def run(options: argparse.Namespace) -> None:
 
     desk = read_desk_study(options.file)
     tell(desk.study.notes)
+    _warn_of_missing_drives(desk)
     told = bundle(desk, options.language, _announce)
     if options.fov is not None:
         told["plan"]["fov_deg"] = options.fov
@@ -80,6 +83,17 @@ def run(options: argparse.Namespace) -> None:
         print(f"{options.export}: {size_mb:.1f} MB; open it in a browser, on any machine.")
         return
     _serve(options, desk, told)
+
+
+def _warn_of_missing_drives(desk: DeskStudy) -> None:
+    """Say before anybody drives what the analysis would say afterwards."""
+    there = {phase.name for phase in desk.study.settings.phases}
+    absent = [name for name in _COMPARED if name not in there]
+    if absent:
+        _announce(
+            f"{desk.study.title}: no drive {', '.join(absent)}, and pldf analyse compares "
+            f"{', '.join(_COMPARED)}; write them into [drives] phases"
+        )
 
 
 def _serve(options: argparse.Namespace, desk: DeskStudy, told: dict[str, Any]) -> None:
