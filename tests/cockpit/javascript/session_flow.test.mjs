@@ -75,6 +75,19 @@ test("each event leads on only from the steps that know it", () => {
   }
 });
 
+test("one practises once more before the first drive only, and only if the plan has practice", () => {
+  const asked = [questionnaire("ssq", ["practice"])];
+  const steps = stepsOf(plan({ practice: 2 }), asked, "AB");
+  const last = steps.findIndex((step) => step.id === "practice 2");
+  for (const [at, step] of steps.entries()) {
+    const expected = step.id === "drive A1" ? last : at;
+    assert.equal(moved(steps, { at, stopped: false }, "practise").at, expected, step.id);
+  }
+  const without = stepsOf(plan({ practice: 0 }), [], "AB");
+  const first = without.findIndex((step) => step.kind === "drive");
+  assert.equal(moved(without, { at: first, stopped: false }, "practise").at, first);
+});
+
 test("a session can be stopped at every step but the last, goes on there, and knows nothing else", () => {
   const steps = stepsOf(plan(), [], "AB");
   for (const at of steps.keys()) {

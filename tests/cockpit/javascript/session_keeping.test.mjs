@@ -93,6 +93,8 @@ test("a practice drive leaves no profile", async () => {
   const path = await keepDrive(storage, begun("P07", 7), practice, result("arrived", 1));
   assert.equal(path, "practice/P07_1.csv");
   assert.deepEqual(await storage.list("sessions/"), []);
+  const twice = withAttempt(withAttempt(begun("P07", 7), practice), practice);
+  assert.equal(await keepDrive(storage, twice, practice, result("arrived", 1)), "practice/P07_1_2.csv");
 });
 
 test("after a crash between drive and record, the drive begins from what was learned before", async () => {

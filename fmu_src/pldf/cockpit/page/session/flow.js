@@ -5,7 +5,7 @@
 /** @typedef {import("../types.js").Questionnaire} Questionnaire */
 /** @typedef {import("./participant.js").Order} Order */
 /** @typedef {"welcome" | "consent" | "questionnaire" | "device" | "practice" | "drive" | "break" | "thanks"} Kind */
-/** @typedef {"next" | "agreed" | "declined" | "answered" | "ready" | "stored" | "again" | "rested" | "stop" | "go_on"} Event */
+/** @typedef {"next" | "agreed" | "declined" | "answered" | "ready" | "stored" | "again" | "practise" | "rested" | "stop" | "go_on"} Event */
 
 /**
  * @typedef {object} Step
@@ -17,14 +17,14 @@
  */
 /** @typedef {{at: number, stopped: boolean}} Place number of the step, and whether the session was stopped there */
 
-/** @type {Record<Kind, Partial<Record<Event, "on" | "stay" | "stop">>>} */
+/** @type {Record<Kind, Partial<Record<Event, "on" | "stay" | "stop" | "practice">>>} */
 const MOVES = {
   welcome: { next: "on", stop: "stop" },
   consent: { agreed: "on", declined: "stop", stop: "stop" },
   questionnaire: { answered: "on", stop: "stop" },
   device: { ready: "on", stop: "stop" },
   practice: { stored: "on", again: "stay", stop: "stop" },
-  drive: { stored: "on", again: "stay", stop: "stop" },
+  drive: { stored: "on", again: "stay", practise: "practice", stop: "stop" },
   break: { rested: "on", stop: "stop" },
   thanks: {},
 };
@@ -108,11 +108,28 @@ export function moved(steps, place, event) {
   switch (MOVES[kind][event]) {
     case "on":
       return { at: Math.min(place.at + 1, steps.length - 1), stopped: false };
+    case "practice":
+      return canPractise(steps, place) ? { at: lastPractice(steps), stopped: false } : place;
     case "stop":
       return { ...place, stopped: true };
     default:
       return place;
   }
+}
+
+/**
+ * Tell whether the person may practise once more: before the first drive that counts.
+ * @param {Step[]} steps
+ * @param {Place} place
+ */
+export function canPractise(steps, place) {
+  const first = steps.findIndex((one) => one.kind === "drive");
+  return place.at === first && lastPractice(steps) >= 0;
+}
+
+/** @param {Step[]} steps */
+function lastPractice(steps) {
+  return steps.findLastIndex((one) => one.kind === "practice");
 }
 
 /**

@@ -5,6 +5,7 @@ import { element } from "../dom.js";
 import { connectedDevices } from "../engine/inputs/gamepad.js";
 import { KEYBOARD } from "../engine/inputs/inputs.js";
 import { calibrationOf, inputsOf } from "./devices.js";
+import { canPractise } from "./flow.js";
 import { drive } from "./drive_screen.js";
 import { chooseDevice } from "./device_screen.js";
 import { keepDrive, learnedFiles } from "./keeping.js";
@@ -36,8 +37,8 @@ export async function driveStep(session) {
   const inputs = session.inputs ?? (await rememberedInputs(session));
   session.inputs = inputs;
   const choice = await introduced(session);
-  if (choice === "stop") {
-    return { event: "stop", reason: "" };
+  if (choice === "stop" || choice === "practise") {
+    return { event: choice, reason: "" };
   }
   if (choice === "device") {
     session.inputs = null;
@@ -96,6 +97,7 @@ function introduced(session) {
   const practises = step.kind === "practice";
   const task = practises ? say("practice_text") : taskOf(session);
   const cutOff = record.attempts.at(-1)?.ending === "cut off";
+  const practise = { text: say("practise_again"), choice: /** @type {const} */ ("practise") };
   return choose(
     app,
     titleOf(session),
@@ -109,6 +111,7 @@ function introduced(session) {
     [
       { text: say("start_drive"), choice: /** @type {const} */ ("start"), kind: "main" },
       { text: sayDrive("change_device"), choice: /** @type {const} */ ("device") },
+      ...(canPractise(session.steps, session.place) ? [practise] : []),
       { text: say("end_session"), choice: /** @type {const} */ ("stop") },
     ],
     [

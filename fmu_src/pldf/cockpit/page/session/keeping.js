@@ -122,13 +122,14 @@ export async function keepDrive(storage, record, attempt, result) {
  */
 function pathsOf(record, attempt, arrived) {
   const name = `${record.participant}_${attempt.name}`;
+  const number = record.attempts.filter((one) => one.name === attempt.name).length;
   if (attempt.kind === "practice") {
-    return [`practice/${name}.csv`, `practice/${name}_inputs.csv`];
+    const again = number > 1 ? `_${number}` : "";
+    return [`practice/${name}${again}.csv`, `practice/${name}${again}_inputs.csv`];
   }
   if (arrived) {
     return [`recordings/${name}.csv`, `inputs/${name}.csv`];
   }
-  const number = record.attempts.filter((one) => one.name === attempt.name).length;
   const stopped = `sessions/${record.participant}/stopped/${attempt.name}_${number}`;
   return [`${stopped}.csv`, `${stopped}_inputs.csv`];
 }
