@@ -35,7 +35,7 @@ SOURCE = re.compile(r"[\w./-]+\.(?:py|[ch]|yml|yaml)")
 WRITTEN = {"dist", "out", "site"}  # by commands
 GENERATED = {"table.c", "table.h"}  # by the native build
 VARIABLE = re.compile(r"[a-z]+(?:_[a-z]+)*\.[a-z_0-9]+(?:\.[a-z_0-9]+)*")
-FILE_ENDINGS = (".csv", ".pldf", ".png", ".ssv", ".py", ".c", ".h", ".toml")
+FILE_ENDINGS = (".csv", ".pldf", ".png", ".ssv", ".py", ".c", ".h", ".js", ".mjs", ".toml")
 NAME_TABLES = ("input", "parameter", "Parameter")
 
 

@@ -44,7 +44,7 @@ _NAMES: Final = {
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``pldf analyse``."""
     parser.add_argument(
-        "folders", metavar="FOLDER", type=Path, nargs="+",
+        "folder", metavar="FOLDER", type=Path, nargs="+",
         help="with drives.csv or recordings/PARTICIPANT_PHASE.csv, and questionnaire.csv if any; "
         "or the .zip files that an exported cockpit handed out: unpacked into a folder beside them",
     )  # fmt: skip
@@ -107,7 +107,7 @@ def run(options: argparse.Namespace) -> None:
 
 def _folder(options: argparse.Namespace) -> Path:
     """Return the folder of the study; zip files are unpacked into one."""
-    folders: list[Path] = options.folders
+    folders: list[Path] = options.folder
     zipped = [path for path in folders if path.suffix.lower() == SUFFIX and path.is_file()]
     if zipped and len(zipped) == len(folders):
         return unpacked_study(zipped)
