@@ -172,7 +172,9 @@ def test_a_participant_can_be_left_out(tmp_path: Path) -> None:
     (tmp_path / "drives.csv").write_text(text.replace("P2,B1,", "P2,B9,"))
     left = analyse(StudyFolder(tmp_path, without=frozenset({"P2"})))
     assert left.participants == ("P1", "P3", "P4")
-    assert "1 participants" in refusal(StudyFolder(tmp_path, without=frozenset({"P1", "P2", "P3"})))
+    assert "1 participant; comparing" in refusal(
+        StudyFolder(tmp_path, without=frozenset({"P1", "P2", "P3"}))
+    )
 
 
 def test_nothing_to_analyse(tmp_path: Path) -> None:

@@ -121,9 +121,10 @@ def analyse(study: StudyFolder, reading: Reading = lambda _done, _all: None) -> 
     if not all(compared.values()):
         raise ModelError(f"{study.folder}: no drives with both systems, so nothing to compare")
     if len(participants) < PARTICIPANTS_MIN:
+        people = "1 participant" if len(participants) == 1 else f"{len(participants)} participants"
         raise ModelError(
-            f"{found.source}: {len(participants)} participants; comparing systems needs at least "
-            f"{PARTICIPANTS_MIN}"
+            f"{study.folder}: {people}; comparing systems needs at least {PARTICIPANTS_MIN}; look "
+            "at the drives of one person with 'pldf plot'"
         )
     order = {name: at for at, name in enumerate(participants)}
     drives = [drive for drive in found.drives if drive.participant in order]
