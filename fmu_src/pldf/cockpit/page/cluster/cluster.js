@@ -189,7 +189,7 @@ class Note {
 /** The legal limit as its sign. */
 class Sign {
   constructor() {
-    this.number = svg("text", { x: 50, y: 66, class: "sign-number" });
+    this.number = svg("text", { x: 50, class: "sign-number" });
     const ring = svg("circle", { cx: 50, cy: 50, r: 42, class: "sign-ring" });
     this.drawing = svg("svg", { viewBox: "0 0 100 100", class: "sign", role: "img" }, ring, this.number);
   }
@@ -199,7 +199,8 @@ class Sign {
     const known = Number.isFinite(inUnit(limit_mps, unit)) && limit_mps > 0;
     const text = known ? speedText(limit_mps, unit) : "";
     say(this.number, text);
-    update(this.number, { "font-size": text.length > 2 ? 38 : 46 });
+    const size = text.length > 2 ? 32 : 46; // within the ring
+    update(this.number, { "font-size": size, y: 50 + 0.36 * size });
     const said = known ? `${words("limit")} ${text} ${unitText(unit)}` : words("limitUnknown");
     update(this.drawing, { "aria-label": said });
   }

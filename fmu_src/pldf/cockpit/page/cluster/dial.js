@@ -28,10 +28,10 @@ export class Dial {
     this.arc = svg("path", { "class": "dial-speed" });
     this.lesson = svg("path", { "class": "dial-lesson" });
     this.limit = svg("path", { "class": "dial-limit", "d": `M100 ${100 - RADIUS - 9}v18` });
-    this.set = svg("path", { "class": "dial-set", "d": `M100 ${100 - RADIUS + 8}l-7 13h14z` });
+    this.set = svg("path", { "class": "dial-set", "d": `M100 ${100 - RADIUS - 9}l-7-13h14z` });
     this.number = svg("text", { "class": "dial-number", "x": 100, "y": 112 });
     this.drawing = svg(
-      "svg", { "class": "dial", "viewBox": "0 6 200 142", "aria-hidden": "true" },
+      "svg", { "class": "dial", "viewBox": "-6 -6 212 156", "aria-hidden": "true" },
       svg("path", { "class": "dial-track", "d": arc(BEGIN_DEG, END_DEG) }),
       this.lesson, this.arc, ...ticks(unit), this.limit, this.set, this.number,
       svg("text", { "class": "dial-unit", "x": 100, "y": 138 }, unitText(unit)),
@@ -40,7 +40,9 @@ export class Dial {
 
   /** @param {Speeds} speeds */
   show({ speed_mps, limit_mps, set_mps, base_mps, target_mps }) {
-    say(this.number, speedText(speed_mps, this.unit));
+    const text = speedText(speed_mps, this.unit);
+    say(this.number, text);
+    update(this.number, { "font-size": text.length > 2 ? 42 : 52 }); // clear of the labels
     update(this.arc, { d: arc(BEGIN_DEG, this.angle(speed_mps)) });
     this.mark(this.limit, limit_mps);
     this.mark(this.set, set_mps);
