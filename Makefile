@@ -22,6 +22,8 @@ endif
 READY := .venv/.ready
 NODE_READY := node_modules/.ready
 BUILT := dist/.built
+PRETTIER = $(BIN)/node node_modules/prettier/bin/prettier.cjs
+PAGE_FILES := "fmu_src/pldf/cockpit/page/**/*.{js,css,html}" "tests/cockpit/javascript/*.mjs"
 FMU_SOURCES := $(shell find fmu_src vehicle_models LICENSE -type f \
 	-not -path '*/__pycache__/*' -not -path '*.egg-info/*')
 
@@ -47,10 +49,12 @@ lint: $(READY) $(NODE_READY)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/node node_modules/typescript/bin/tsc --noEmit
+	$(PRETTIER) --check $(PAGE_FILES)
 
-format: $(READY)
+format: $(READY) $(NODE_READY)
 	$(BIN)/ruff check --fix
 	$(BIN)/ruff format
+	$(PRETTIER) --log-level warn --write $(PAGE_FILES)
 
 docs: $(READY)
 	$(BIN)/python -m mkdocs build --strict

@@ -4,7 +4,12 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { messageOf } from "../../../fmu_src/pldf/cockpit/page/cluster/live.js";
-import { changeText, distanceText, inUnit, speedText } from "../../../fmu_src/pldf/cockpit/page/cluster/units.js";
+import {
+  changeText,
+  distanceText,
+  inUnit,
+  speedText,
+} from "../../../fmu_src/pldf/cockpit/page/cluster/units.js";
 
 test("speeds are whole numbers in the unit of the cluster", () => {
   assert.equal(speedText(50 / 3.6, "KMH"), "50");
@@ -31,13 +36,28 @@ test("distances are rounded as one says them", () => {
 test("a simulator's message needs no more than values", () => {
   const message = messageOf('{"values": {"vehicle.speed_mps": 12}}');
   assert.deepEqual(message, {
-    kind: "frame", participant: "", phase: "", time_s: 0, values: { "vehicle.speed_mps": 12 },
+    kind: "frame",
+    participant: "",
+    phase: "",
+    time_s: 0,
+    values: { "vehicle.speed_mps": 12 },
   });
 });
 
 test("what is no message is none", () => {
-  for (const text of ["", "[", "null", "7", '"a"', "{}", '{"kind":"frame"}', '{"kind":"frame","values":null}',
-    '{"kind":"status"}', '{"kind":"abort","reason":"sick"}', '{"kind":"other","participant":"P07"}']) {
+  for (const text of [
+    "",
+    "[",
+    "null",
+    "7",
+    '"a"',
+    "{}",
+    '{"kind":"frame"}',
+    '{"kind":"frame","values":null}',
+    '{"kind":"status"}',
+    '{"kind":"abort","reason":"sick"}',
+    '{"kind":"other","participant":"P07"}',
+  ]) {
     assert.equal(messageOf(text), null, text);
   }
 });

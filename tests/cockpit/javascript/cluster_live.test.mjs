@@ -68,7 +68,10 @@ test("what is told while there is no line is lost, but for where the person is",
 test("a line that breaks is made anew", () => {
   /** @type {boolean[]} */
   const states = [];
-  const live = new Live(() => {}, (connected) => states.push(connected));
+  const live = new Live(
+    () => {},
+    (connected) => states.push(connected),
+  );
   line().open();
   live.send(STATUS);
   line().close();

@@ -1,10 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import {
-  frameAt,
-  Interpolation,
-} from "../../../fmu_src/pldf/cockpit/page/engine/interpolation.js";
+import { frameAt, Interpolation } from "../../../fmu_src/pldf/cockpit/page/engine/interpolation.js";
 import { Lateral } from "../../../fmu_src/pldf/cockpit/page/engine/lateral.js";
 import { Person, RELEASED, Repeated } from "../../../fmu_src/pldf/cockpit/page/engine/person.js";
 

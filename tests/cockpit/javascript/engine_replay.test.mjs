@@ -50,7 +50,10 @@ test("a laboratory's table with semicolons, decimal commas, quotes and codes is 
 test("a logger that stutters is passed over, and told", () => {
   const text = "time_s,s_m,speed_mps\n0,0,1\n1,1,1\n1,1,1\n0.5,2,1\n0.7,2,1\n2,2,1\n";
   const replay = readReplay(text);
-  assert.deepEqual(replay.frames.map(({ time_s }) => time_s), [0, 1, 2]);
+  assert.deepEqual(
+    replay.frames.map(({ time_s }) => time_s),
+    [0, 1, 2],
+  );
   assert.equal(replay.passed_over, 3);
 });
 

@@ -2,10 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { bytesOf, decoded } from "../../../fmu_src/pldf/cockpit/page/engine/bundle.js";
-import {
-  inputsCsv,
-  readInputs,
-} from "../../../fmu_src/pldf/cockpit/page/engine/input_changes.js";
+import { inputsCsv, readInputs } from "../../../fmu_src/pldf/cockpit/page/engine/input_changes.js";
 
 test("bytes come back from base64", () => {
   const bytes = Uint8Array.from({ length: 256 }, (_, at) => at);

@@ -7,7 +7,12 @@ import {
   problemsOf,
   shownItems,
 } from "../../../fmu_src/pldf/cockpit/page/session/answering.js";
-import { newRecord, withAnswers, withAttempt, withEnding } from "../../../fmu_src/pldf/cockpit/page/session/record.js";
+import {
+  newRecord,
+  withAnswers,
+  withAttempt,
+  withEnding,
+} from "../../../fmu_src/pldf/cockpit/page/session/record.js";
 import {
   answersTable,
   exclusionsTable,
@@ -28,7 +33,12 @@ const ABOUT = /** @type {const} */ ({
 
 /** @param {string} name */
 function record(name, driver_id = 7) {
-  const who = { name, driver_id, order: /** @type {const} */ ("AB"), explanation: /** @type {const} */ ("text") };
+  const who = {
+    name,
+    driver_id,
+    order: /** @type {const} */ ("AB"),
+    explanation: /** @type {const} */ ("text"),
+  };
   return newRecord(who, ABOUT, "welcome", "2026-01-02T03:04:05Z");
 }
 
@@ -46,19 +56,30 @@ const answered = (one, after, answers, questionnaire = "laan") =>
  */
 function driven(one, names) {
   return names.reduce((known, name) => {
-    const begun = { kind: /** @type {const} */ ("drive"), name, began_at: "t", device: "keyboard", steering: /** @type {const} */ ("assisted") };
+    const begun = {
+      kind: /** @type {const} */ ("drive"),
+      name,
+      began_at: "t",
+      device: "keyboard",
+      steering: /** @type {const} */ ("assisted"),
+    };
     return withEnding(withAttempt(known, begun), { ending: "arrived" });
   }, one);
 }
 
 const ITEMS = [
-  item({ id: "drives", kind: "choice", options: ["yes", "no"].map((key) => ({ key, text: { en: key, de: key } })) }),
+  item({
+    id: "drives",
+    kind: "choice",
+    options: ["yes", "no"].map((key) => ({ key, text: { en: key, de: key } })),
+  }),
   item({ id: "km", kind: "number", low: 0, high: 100, only_if: { id: "drives", is: ["yes"] } }),
   item({ id: "why", kind: "text", required: false, only_if: { id: "km", is: [0] } }),
 ];
 
 test("an item with a condition is shown only while the item it hangs on is shown and answered so", () => {
-  const ids = (/** @type {Record<string, string | number>} */ answers) => shownItems(ITEMS, answers).map((one) => one.id);
+  const ids = (/** @type {Record<string, string | number>} */ answers) =>
+    shownItems(ITEMS, answers).map((one) => one.id);
   assert.deepEqual(ids({}), ["drives"]);
   assert.deepEqual(ids({ drives: "no", km: 0 }), ["drives"]);
   assert.deepEqual(ids({ drives: "yes" }), ["drives", "km"]);
@@ -78,11 +99,17 @@ test("answers to what is hidden again do not count", () => {
 
 test("questionnaire.csv has a row per participant and drive with scored items, escaped", () => {
   const asked = [
-    questionnaire("laan", ["A2", "B2"], [item({ id: "laan_1" }), item({ id: "comment", kind: "text" })]),
+    questionnaire(
+      "laan",
+      ["A2", "B2"],
+      [item({ id: "laan_1" }), item({ id: "comment", kind: "text" })],
+    ),
     questionnaire("before", ["start"], [item({ id: "age", kind: "number" })]),
   ];
   const one = answered(record("P07"), "A2", { laan_1: 2, comment: 'said "so", and\nmore' });
-  const two = answered(answered(record("P08", 8), "start", { age: 30 }, "before"), "B2", { laan_1: 5 });
+  const two = answered(answered(record("P08", 8), "start", { age: 30 }, "before"), "B2", {
+    laan_1: 5,
+  });
   assert.equal(
     questionnaireTable([one, two], asked),
     'participant,phase,laan_1,comment\nP07,A2,2,"said ""so"", and\nmore"\nP08,B2,5,\n',
@@ -121,13 +148,19 @@ test("who stops is excluded for what was not driven, until the person drives on"
     exclusionsTable([again], plan(), table),
     "participant,phase,reason\nP07,B2,session stopped: time\n",
   );
-  assert.equal(exclusionsTable([driven(whole, ["B2"])], plan(), table), "participant,phase,reason\n");
+  assert.equal(
+    exclusionsTable([driven(whole, ["B2"])], plan(), table),
+    "participant,phase,reason\n",
+  );
 });
 
 test("what the laboratory wrote into exclusions.csv stays as it is", () => {
   const by_hand = "participant,phase,reason\nP07,B1,wheel was loose\nP03,,asked to be taken out\n";
   const half = { ...driven(record("P07"), ["A1", "A2"]), stopped: { at: "t", reason: "time" } };
-  assert.equal(exclusionsTable([half], plan(), by_hand), `${by_hand}P07,B2,session stopped: time\n`);
+  assert.equal(
+    exclusionsTable([half], plan(), by_hand),
+    `${by_hand}P07,B2,session stopped: time\n`,
+  );
   assert.equal(exclusionsTable([half], plan(), "who;drive;why\n"), null);
   assert.equal(exclusionsTable([record("P07")], plan(), by_hand), null);
   assert.equal(exclusionsTable([record("P07")], plan(), null), null);

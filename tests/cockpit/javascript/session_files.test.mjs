@@ -14,7 +14,8 @@ import { unzipSync } from "../../../fmu_src/pldf/cockpit/page/vendor/fflate.js";
 const bytes = (/** @type {string} */ text) => new TextEncoder().encode(text);
 
 test("a file is told by its name, a table by its columns", () => {
-  const kind = (/** @type {string} */ name, content = "") => kindOf({ name, bytes: bytes(content) });
+  const kind = (/** @type {string} */ name, content = "") =>
+    kindOf({ name, bytes: bytes(content) });
   assert.equal(kind("a.PLDF"), "profile");
   assert.equal(kind("a.prepared"), "prepared");
   assert.equal(kind("a.xodr"), "road");
@@ -29,8 +30,14 @@ test("each file that cannot be read is told, the others are taken", async () => 
     bytes: bytes("nothing"),
   }));
   const dropped = await readDropped([...files, good], null);
-  assert.deepEqual(dropped.refused.map(({ name }) => name), files.map(({ name }) => name));
-  assert.deepEqual(dropped.recordings.map(({ name }) => name), ["good.csv"]);
+  assert.deepEqual(
+    dropped.refused.map(({ name }) => name),
+    files.map(({ name }) => name),
+  );
+  assert.deepEqual(
+    dropped.recordings.map(({ name }) => name),
+    ["good.csv"],
+  );
   assert.equal(dropped.road, null);
 });
 
@@ -69,7 +76,10 @@ test("the server is asked again with the way through a network, until it knows a
     return Response.json(answers[asked.length - 1]);
   };
   try {
-    const road = await prepareOnServer(async ({ options }) => options)({ name: "a b.xodr", bytes: bytes("x") });
+    const road = await prepareOnServer(async ({ options }) => options)({
+      name: "a b.xodr",
+      bytes: bytes("x"),
+    });
     assert.equal(new TextDecoder().decode(road.road.prepared), "road");
   } finally {
     globalThis.fetch = original;
@@ -88,7 +98,15 @@ test("a calibration that was kept is used only if one can drive with it", () => 
   delete without.controls.brake;
   const stuck = kept();
   stuck.controls.gas.full = stuck.controls.gas.rest;
-  for (const wrong of [null, 3, {}, { controls: {} }, { ...kept(), dead_zone: 0.6 }, without, stuck]) {
+  for (const wrong of [
+    null,
+    3,
+    {},
+    { controls: {} },
+    { ...kept(), dead_zone: 0.6 },
+    without,
+    stuck,
+  ]) {
     assert.equal(isCalibration(wrong), false);
   }
 });

@@ -3,7 +3,10 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { moved, placeOf, stepsOf } from "../../../fmu_src/pldf/cockpit/page/session/flow.js";
-import { participantOf, pseudonym } from "../../../fmu_src/pldf/cockpit/page/session/participant.js";
+import {
+  participantOf,
+  pseudonym,
+} from "../../../fmu_src/pldf/cockpit/page/session/participant.js";
 import { plan, questionnaire } from "./session_support.mjs";
 
 /** @param {import("../../../fmu_src/pldf/cockpit/page/session/flow.js").Step[]} steps */
@@ -70,7 +73,10 @@ test("each event leads on only from the steps that know it", () => {
   for (const [at, step] of steps.entries()) {
     for (const event of events) {
       const expected = leads[step.kind] === event ? at + 1 : at;
-      assert.deepEqual(moved(steps, { at, stopped: false }, event), { at: expected, stopped: false });
+      assert.deepEqual(moved(steps, { at, stopped: false }, event), {
+        at: expected,
+        stopped: false,
+      });
     }
   }
 });
@@ -124,15 +130,18 @@ test("order and explanation follow from the number, if the address does not say 
     const who = participantOf(typed, order, study);
     return [who?.order, who?.explanation];
   };
-  assert.deepEqual(["1", "2", "3", "4", "5", "6", "7"].map((typed) => of(typed)), [
-    ["AB", "none"],
-    ["BA", "none"],
-    ["AB", "icon"],
-    ["BA", "icon"],
-    ["AB", "text"],
-    ["BA", "text"],
-    ["AB", "none"],
-  ]);
+  assert.deepEqual(
+    ["1", "2", "3", "4", "5", "6", "7"].map((typed) => of(typed)),
+    [
+      ["AB", "none"],
+      ["BA", "none"],
+      ["AB", "icon"],
+      ["BA", "icon"],
+      ["AB", "text"],
+      ["BA", "text"],
+      ["AB", "none"],
+    ],
+  );
   assert.deepEqual(of("4", "AB"), ["AB", "icon"]);
   assert.equal(participantOf("2", null, plan())?.order, "AB");
 });

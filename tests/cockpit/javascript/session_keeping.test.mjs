@@ -10,14 +10,23 @@ import {
   publishProfiles,
   readRecord,
 } from "../../../fmu_src/pldf/cockpit/page/session/keeping.js";
-import { newRecord, withAttempt, withEnding } from "../../../fmu_src/pldf/cockpit/page/session/record.js";
-import { memoryStorage, serverStorage } from "../../../fmu_src/pldf/cockpit/page/session/storage.js";
+import {
+  newRecord,
+  withAttempt,
+  withEnding,
+} from "../../../fmu_src/pldf/cockpit/page/session/record.js";
+import {
+  memoryStorage,
+  serverStorage,
+} from "../../../fmu_src/pldf/cockpit/page/session/storage.js";
 import { plan } from "./session_support.mjs";
 
 /** @typedef {import("../../../fmu_src/pldf/cockpit/page/types.js").DriveResult} DriveResult */
 /** @typedef {import("../../../fmu_src/pldf/cockpit/page/types.js").Bundle} Bundle */
 
-const BUNDLE = /** @type {Bundle} */ (/** @type {unknown} */ ({ plan: plan(), questionnaires: [] }));
+const BUNDLE = /** @type {Bundle} */ (
+  /** @type {unknown} */ ({ plan: plan(), questionnaires: [] })
+);
 const FILE = "driver-000007_route-abc.pldf";
 
 /**
@@ -25,8 +34,19 @@ const FILE = "driver-000007_route-abc.pldf";
  * @param {number} driver_id
  */
 function begun(name, driver_id) {
-  const who = { name, driver_id, order: /** @type {const} */ ("AB"), explanation: /** @type {const} */ ("text") };
-  const about = /** @type {const} */ ({ version: "1", study: "s", language: "en", browser: "", screen: "" });
+  const who = {
+    name,
+    driver_id,
+    order: /** @type {const} */ ("AB"),
+    explanation: /** @type {const} */ ("text"),
+  };
+  const about = /** @type {const} */ ({
+    version: "1",
+    study: "s",
+    language: "en",
+    browser: "",
+    screen: "",
+  });
   return newRecord(who, about, "welcome", "t");
 }
 
@@ -49,12 +69,21 @@ const result = (ending, learned) => ({
 
 /** @param {string} name */
 const drive = (name) =>
-  /** @type {const} */ ({ kind: "drive", name, began_at: "t", device: "keyboard", steering: "assisted" });
+  /** @type {const} */ ({
+    kind: "drive",
+    name,
+    began_at: "t",
+    device: "keyboard",
+    steering: "assisted",
+  });
 
 test("a drive that arrived is stored where the analysis looks for it", async () => {
   const storage = memoryStorage();
   const record = withAttempt(begun("P07", 7), drive("A2"));
-  assert.equal(await keepDrive(storage, record, drive("A2"), result("arrived", 1)), "recordings/P07_A2.csv");
+  assert.equal(
+    await keepDrive(storage, record, drive("A2"), result("arrived", 1)),
+    "recordings/P07_A2.csv",
+  );
   await publishProfiles(storage, { ...record, learned_after: "A2" });
   assert.deepEqual(await storage.list(""), [
     "inputs/P07_A2.csv",
@@ -63,7 +92,10 @@ test("a drive that arrived is stored where the analysis looks for it", async () 
     `sessions/P07/A2/${FILE}`,
   ]);
   const inputs = await storage.read("inputs/P07_A2.csv");
-  assert.equal(new TextDecoder().decode(inputs ?? undefined), "step,name,value\n3,driver.gas_pedal,0.1\n");
+  assert.equal(
+    new TextDecoder().decode(inputs ?? undefined),
+    "step,name,value\n3,driver.gas_pedal,0.1\n",
+  );
 });
 
 test("a drive that did not arrive is kept apart and changes no profile", async () => {
@@ -94,7 +126,10 @@ test("a practice drive leaves no profile", async () => {
   assert.equal(path, "practice/P07_1.csv");
   assert.deepEqual(await storage.list("sessions/"), []);
   const twice = withAttempt(withAttempt(begun("P07", 7), practice), practice);
-  assert.equal(await keepDrive(storage, twice, practice, result("arrived", 1)), "practice/P07_1_2.csv");
+  assert.equal(
+    await keepDrive(storage, twice, practice, result("arrived", 1)),
+    "practice/P07_1_2.csv",
+  );
 });
 
 test("after a crash between drive and record, the drive begins from what was learned before", async () => {
@@ -116,8 +151,13 @@ test("tables are made of all sessions", async () => {
   const storage = memoryStorage();
   await keepRecord(storage, begun("P07", 7), BUNDLE);
   await keepRecord(storage, begun("P08", 8), BUNDLE);
-  assert.deepEqual((await allRecords(storage)).map((one) => one.participant), ["P07", "P08"]);
-  const summary = JSON.parse(new TextDecoder().decode((await storage.read("session.json")) ?? undefined));
+  assert.deepEqual(
+    (await allRecords(storage)).map((one) => one.participant),
+    ["P07", "P08"],
+  );
+  const summary = JSON.parse(
+    new TextDecoder().decode((await storage.read("session.json")) ?? undefined),
+  );
   assert.equal(summary.sessions.length, 2);
   assert.equal(await storage.read("questionnaire.csv"), null);
 });

@@ -18,7 +18,10 @@ async function stayAwake() {
 async function start(parent) {
   const { texts, language } = await loadBundle();
   const screen = new SecondScreen(parent, texts, wantedBy(location.search), language);
-  new Live((message) => screen.take(message), (connected) => screen.connect(connected));
+  new Live(
+    (message) => screen.take(message),
+    (connected) => screen.connect(connected),
+  );
   document.addEventListener("visibilitychange", () => void stayAwake());
   await stayAwake();
 }

@@ -19,9 +19,15 @@ async function start(parent) {
   const { texts, language, road } = await loadBundle();
   speak(wantedBy(location.search).language ?? language);
   const desk = new Desk(parent, {
-    texts, road: roadOf(road), recordings, tell: (message) => live.send(message),
+    texts,
+    road: roadOf(road),
+    recordings,
+    tell: (message) => live.send(message),
   });
-  const live = new Live((message) => desk.take(message), (connected) => desk.connect(connected));
+  const live = new Live(
+    (message) => desk.take(message),
+    (connected) => desk.connect(connected),
+  );
 }
 
 const parent = document.querySelector("main");

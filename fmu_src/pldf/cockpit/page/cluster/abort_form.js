@@ -6,14 +6,30 @@ import { say } from "./svg.js";
 
 const words = wording({
   en: {
-    abort: "End this drive …", reason: "Why does it end?", sick: "Motion sickness", wish: "The participant wishes it",
-    fault: "Technical fault", other: "Another reason:", own: "Reason in words", sure: "End it now", back: "Let it go on",
-    sent: "Told to the participant's page.", missing: "Please say why.",
+    abort: "End this drive …",
+    reason: "Why does it end?",
+    sick: "Motion sickness",
+    wish: "The participant wishes it",
+    fault: "Technical fault",
+    other: "Another reason:",
+    own: "Reason in words",
+    sure: "End it now",
+    back: "Let it go on",
+    sent: "Told to the participant's page.",
+    missing: "Please say why.",
   },
   de: {
-    abort: "Diese Fahrt beenden …", reason: "Warum endet sie?", sick: "Übelkeit", wish: "Wunsch der Person",
-    fault: "Technische Störung", other: "Anderer Grund:", own: "Grund in Worten", sure: "Jetzt beenden", back: "Weiterfahren lassen",
-    sent: "Der Seite der Person mitgeteilt.", missing: "Bitte einen Grund nennen.",
+    abort: "Diese Fahrt beenden …",
+    reason: "Warum endet sie?",
+    sick: "Übelkeit",
+    wish: "Wunsch der Person",
+    fault: "Technische Störung",
+    other: "Anderer Grund:",
+    own: "Grund in Worten",
+    sure: "Jetzt beenden",
+    back: "Weiterfahren lassen",
+    sent: "Der Seite der Person mitgeteilt.",
+    missing: "Bitte einen Grund nennen.",
   },
 });
 
@@ -28,23 +44,29 @@ export class AbortForm {
     const known = /** @type {const} */ (["sick", "wish", "fault"]);
     this.radios = [...known.map((key) => radio(name, words(key))), radio(name, "")];
     this.own = /** @type {HTMLInputElement} */ (
-      element("input", { "type": "text", "maxlength": "200", "aria-label": words("own") })
+      element("input", { type: "text", maxlength: "200", "aria-label": words("own") })
     );
     this.own.addEventListener("input", () => this.radios.at(-1)?.click());
     this.note = element("p", { role: "status" });
     this.opener = /** @type {HTMLButtonElement} */ (
       element("button", { type: "button", onclick: () => this.open(true) }, words("abort"))
     );
-    this.form = /** @type {HTMLFormElement} */ (element(
-      "form", { hidden: true, onsubmit: (/** @type {Event} */ event) => this.submit(event, abort) },
+    this.form = /** @type {HTMLFormElement} */ (
       element(
-        "fieldset", {}, element("legend", {}, words("reason")),
-        ...known.map((key, i) => element("label", {}, this.radios[i], words(key))),
-        element("label", {}, this.radios.at(-1), words("other")), this.own,
-      ),
-      element("button", { class: "desk-abort" }, words("sure")),
-      element("button", { type: "button", onclick: () => this.open(false) }, words("back")),
-    ));
+        "form",
+        { hidden: true, onsubmit: (/** @type {Event} */ event) => this.submit(event, abort) },
+        element(
+          "fieldset",
+          {},
+          element("legend", {}, words("reason")),
+          ...known.map((key, i) => element("label", {}, this.radios[i], words(key))),
+          element("label", {}, this.radios.at(-1), words("other")),
+          this.own,
+        ),
+        element("button", { class: "desk-abort" }, words("sure")),
+        element("button", { type: "button", onclick: () => this.open(false) }, words("back")),
+      )
+    );
     this.root = element("div", { class: "desk-end" }, this.opener, this.form, this.note);
   }
 

@@ -29,16 +29,27 @@ import { perMetre, summary } from "./story.js";
 
 const words = wording({
   en: {
-    title: "What happened, and what was learned", map: "Map of the road with {count} numbered places",
+    title: "What happened, and what was learned",
+    map: "Map of the road with {count} numbered places",
     told: "What the function says of each intervention",
-    begin: "● start", end: "■ end", gas: "gas pedal", brake: "brake", set_speed: "set speed moved",
+    begin: "● start",
+    end: "■ end",
+    gas: "gas pedal",
+    brake: "brake",
+    set_speed: "set speed moved",
     failed: "This could not be forgotten: {reason} What was learned is as before; try it again.",
   },
   de: {
-    title: "Was geschah, und was gelernt wurde", map: "Karte der Strecke mit {count} nummerierten Stellen",
+    title: "Was geschah, und was gelernt wurde",
+    map: "Karte der Strecke mit {count} nummerierten Stellen",
     told: "Was die Funktion zu jedem Eingriff sagt (englisch)",
-    begin: "● Beginn", end: "■ Ende", gas: "Gaspedal", brake: "Bremse", set_speed: "Setztempo verstellt",
-    failed: "Das ließ sich nicht vergessen: {reason} Das Gelernte ist wie zuvor; bitte noch einmal versuchen.",
+    begin: "● Beginn",
+    end: "■ Ende",
+    gas: "Gaspedal",
+    brake: "Bremse",
+    set_speed: "Setztempo verstellt",
+    failed:
+      "Das ließ sich nicht vergessen: {reason} Das Gelernte ist wie zuvor; bitte noch einmal versuchen.",
   },
 });
 
@@ -61,14 +72,18 @@ export class AfterDrive {
     });
     this.map = new RouteMap(road, words("map", { count: this.places.length }));
     const plot = element("div", { class: "after-plot" });
-    this.summary = element("p", { "class": "after-summary", "aria-live": "polite" });
+    this.summary = element("p", { class: "after-summary", "aria-live": "polite" });
     this.error = element("p", { class: "after-error", role: "alert" });
     this.root = element(
-      "section", { class: "after" },
+      "section",
+      { class: "after" },
       element("h2", {}, words("title")),
       this.summary,
       element("div", { class: "after-map" }, this.map.drawing, legend()),
-      plot, this.error, this.list.root, outcomes(drive.messages ?? []),
+      plot,
+      this.error,
+      this.list.root,
+      outcomes(drive.messages ?? []),
     );
     fill(parent, this.root);
     this.plot = new SpeedPlot(plot, unit, "next", (s_m) => this.map.mark(s_m));
@@ -88,7 +103,8 @@ export class AfterDrive {
         driven_mps: this.driven,
         last_mps: newest ? columnOf(newest, "learned_mps") : new Float64Array(road.nodes).fill(NaN),
       },
-      this.interventions, this.places,
+      this.interventions,
+      this.places,
     );
     fill(this.summary, summary(this.interventions, left));
     this.map.show(this.places, gone);
@@ -118,7 +134,10 @@ export class AfterDrive {
       this.show(readProfile(await this.drive.forget(forgotten.map((place) => place.at_m))));
       return true;
     } catch (error) {
-      fill(this.error, words("failed", { reason: error instanceof Error ? error.message : String(error) }));
+      fill(
+        this.error,
+        words("failed", { reason: error instanceof Error ? error.message : String(error) }),
+      );
       return false;
     }
   }
@@ -150,8 +169,12 @@ function outcomes(messages) {
 function legend() {
   const kinds = /** @type {const} */ (["gas", "brake", "set_speed"]);
   return element(
-    "p", { class: "after-legend" },
-    element("span", {}, words("begin")), element("span", {}, words("end")),
-    ...kinds.map((kind) => element("span", { "class": "after-kind", "data-kind": kind }, words(kind))),
+    "p",
+    { class: "after-legend" },
+    element("span", {}, words("begin")),
+    element("span", {}, words("end")),
+    ...kinds.map((kind) =>
+      element("span", { class: "after-kind", "data-kind": kind }, words(kind)),
+    ),
   );
 }

@@ -15,8 +15,18 @@ const BUTTONS = {
 };
 
 const words = wording({
-  en: { pause_learning: "Pause learning", forget_here: "Forget here", undo: "Undo", key: "key {key}" },
-  de: { pause_learning: "Lernen pausieren", forget_here: "Hier vergessen", undo: "Zurücknehmen", key: "Taste {key}" },
+  en: {
+    pause_learning: "Pause learning",
+    forget_here: "Forget here",
+    undo: "Undo",
+    key: "key {key}",
+  },
+  de: {
+    pause_learning: "Lernen pausieren",
+    forget_here: "Hier vergessen",
+    undo: "Zurücknehmen",
+    key: "Taste {key}",
+  },
 });
 
 /** The three buttons; keys are the business of the inputs. */
@@ -39,12 +49,14 @@ export class Buttons {
     return element(
       "button",
       {
-        "type": "button", "class": "cluster-button",
+        type: "button",
+        class: "cluster-button",
         "aria-pressed": word === "pause_learning" && "false",
         "aria-keyshortcuts": key,
-        "onclick": (/** @type {MouseEvent} */ event) => this.clicked(word, event),
+        onclick: (/** @type {MouseEvent} */ event) => this.clicked(word, event),
       },
-      icon(name), element("span", {}, words(word)),
+      icon(name),
+      element("span", {}, words(word)),
       element("kbd", { title: words("key", { key }) }, key),
     );
   }

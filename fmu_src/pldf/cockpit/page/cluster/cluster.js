@@ -20,19 +20,39 @@ const NEXT_SHOWN_MPS = 2 / 3.6; // a speed that is nearer to the present one is 
 const words = wording({
   en: {
     cluster: "Instrument cluster",
-    limit: "Speed limit", limitUnknown: "Speed limit not known",
-    set: "Set speed", next: "Next", learned: "Learned here",
-    inDistance: "in {distance}", drives: "{count} drives", drive: "1 drive", sure: "{percent} % sure",
+    limit: "Speed limit",
+    limitUnknown: "Speed limit not known",
+    set: "Set speed",
+    next: "Next",
+    learned: "Learned here",
+    inDistance: "in {distance}",
+    drives: "{count} drives",
+    drive: "1 drive",
+    sure: "{percent} % sure",
     paused: "Learning paused",
-    OFF: "Off", STANDBY: "Ready", ACTIVE: "Drives", GAS_OVERRIDE: "You drive", FAULT: "Fault",
+    OFF: "Off",
+    STANDBY: "Ready",
+    ACTIVE: "Drives",
+    GAS_OVERRIDE: "You drive",
+    FAULT: "Fault",
   },
   de: {
     cluster: "Kombiinstrument",
-    limit: "Tempolimit", limitUnknown: "Tempolimit unbekannt",
-    set: "Setztempo", next: "Als Nächstes", learned: "Hier gelernt",
-    inDistance: "in {distance}", drives: "{count} Fahrten", drive: "1 Fahrt", sure: "{percent} % sicher",
+    limit: "Tempolimit",
+    limitUnknown: "Tempolimit unbekannt",
+    set: "Setztempo",
+    next: "Als Nächstes",
+    learned: "Hier gelernt",
+    inDistance: "in {distance}",
+    drives: "{count} Fahrten",
+    drive: "1 Fahrt",
+    sure: "{percent} % sicher",
     paused: "Lernen pausiert",
-    OFF: "Aus", STANDBY: "Bereit", ACTIVE: "Fährt", GAS_OVERRIDE: "Sie fahren", FAULT: "Störung",
+    OFF: "Aus",
+    STANDBY: "Bereit",
+    ACTIVE: "Fährt",
+    GAS_OVERRIDE: "Sie fahren",
+    FAULT: "Störung",
   },
 });
 
@@ -54,20 +74,30 @@ export class Cluster {
     this.next = new Note("cluster-next", words("next"));
     this.learned = new Note("cluster-learned", words("learned"));
     this.sentence = element("p", { class: "cluster-sentence" });
-    this.spoken = element("p", { "class": "cluster-spoken", "aria-live": "polite" });
-    this.warning = element("p", { "class": "cluster-spoken", "aria-live": "assertive" });
+    this.spoken = element("p", { class: "cluster-spoken", "aria-live": "polite" });
+    this.warning = element("p", { class: "cluster-spoken", "aria-live": "assertive" });
     /** @type {import("./sentence.js").Row | null} */
     this.row = null;
     this.root = element(
-      "section", { "class": "cluster", "aria-label": words("cluster") },
-      element("div", { class: "cluster-left" }, this.sign.drawing, element(
-        "div", { class: "cluster-state" }, this.mode,
-        element("p", { class: "cluster-label" }, words("set")), this.set,
-      )),
+      "section",
+      { class: "cluster", "aria-label": words("cluster") },
+      element(
+        "div",
+        { class: "cluster-left" },
+        this.sign.drawing,
+        element(
+          "div",
+          { class: "cluster-state" },
+          this.mode,
+          element("p", { class: "cluster-label" }, words("set")),
+          this.set,
+        ),
+      ),
       this.dial.drawing,
       element("div", { class: "cluster-right" }, this.next.root, this.learned.root),
-      element("div", { "class": "cluster-says", "aria-hidden": "true" }, this.sentence),
-      this.spoken, this.warning,
+      element("div", { class: "cluster-says", "aria-hidden": "true" }, this.sentence),
+      this.spoken,
+      this.warning,
     );
     fill(parent, this.root);
     this.show({});
@@ -93,7 +123,10 @@ export class Cluster {
   /** @param {Values} values */
   showMode(values) {
     const mode = MODES[number(values, "mode")] ?? "";
-    update(this.root, { "data-mode": mode, "data-take-over": String(values["hmi.take_over"] === true) });
+    update(this.root, {
+      "data-mode": mode,
+      "data-take-over": String(values["hmi.take_over"] === true),
+    });
     const paused = values["teach.pause"] === true;
     const said = mode === "" ? "" : words(/** @type {"OFF"} */ (mode));
     say(this.mode, paused ? words("paused") : said);
@@ -109,7 +142,9 @@ export class Cluster {
     const known = next > 0 && distance > 0 && Math.abs(change) >= NEXT_SHOWN_MPS;
     const name = change > 0 ? "faster" : "slower";
     this.next.show(
-      known, name, `${speedText(next, this.unit)} ${unitText(this.unit)}`,
+      known,
+      name,
+      `${speedText(next, this.unit)} ${unitText(this.unit)}`,
       known ? words("inDistance", { distance: distanceText(distance, language()) }) : "",
     );
   }
@@ -125,8 +160,10 @@ export class Cluster {
       sure > 0 && words("sure", { percent: Math.round(100 * sure) }),
     ];
     this.learned.show(
-      known, change > 0 ? "learned-faster" : "learned-slower",
-      `${changeText(change, this.unit)} ${unitText(this.unit)}`, why.filter(Boolean).join(", "),
+      known,
+      change > 0 ? "learned-faster" : "learned-slower",
+      `${changeText(change, this.unit)} ${unitText(this.unit)}`,
+      why.filter(Boolean).join(", "),
     );
   }
 
@@ -139,7 +176,11 @@ export class Cluster {
     const key = `${may.icon ? row?.icon : ""} ${limit} ${text}`;
     if (this.sentence.dataset["key"] === key) return;
     this.sentence.dataset["key"] = key;
-    fill(this.sentence, may.icon && row !== null && icon(row.icon, limit), text !== "" && element("span", {}, text));
+    fill(
+      this.sentence,
+      may.icon && row !== null && icon(row.icon, limit),
+      text !== "" && element("span", {}, text),
+    );
     this.speak(row, text);
   }
 
@@ -164,7 +205,13 @@ class Note {
     this.picture = element("div", { class: "cluster-picture" });
     this.value = element("p", { class: "cluster-value" });
     this.more = element("p", { class: "cluster-more" });
-    const text = element("div", {}, element("p", { class: "cluster-label" }, name), this.value, this.more);
+    const text = element(
+      "div",
+      {},
+      element("p", { class: "cluster-label" }, name),
+      this.value,
+      this.more,
+    );
     this.root = element("div", { class: `cluster-note ${kind}` }, this.picture, text);
   }
 
@@ -191,7 +238,12 @@ class Sign {
   constructor() {
     this.number = svg("text", { x: 50, class: "sign-number" });
     const ring = svg("circle", { cx: 50, cy: 50, r: 42, class: "sign-ring" });
-    this.drawing = svg("svg", { viewBox: "0 0 100 100", class: "sign", role: "img" }, ring, this.number);
+    this.drawing = svg(
+      "svg",
+      { viewBox: "0 0 100 100", class: "sign", role: "img" },
+      ring,
+      this.number,
+    );
   }
 
   /** @param {number} limit_mps @param {Unit} unit */

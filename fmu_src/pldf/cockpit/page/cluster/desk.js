@@ -13,11 +13,13 @@ const LOOK_MS = 500;
 
 const words = wording({
   en: {
-    title: "Experimenter", nobody: "Nobody drives yet. This page shows who begins a session.",
+    title: "Experimenter",
+    nobody: "Nobody drives yet. This page shows who begins a session.",
     lost: "No connection to the server: is pldf cockpit still running? The drives go on by themselves.",
   },
   de: {
-    title: "Versuchsleitung", nobody: "Noch fährt niemand. Hier erscheint, wer eine Sitzung beginnt.",
+    title: "Versuchsleitung",
+    nobody: "Noch fährt niemand. Hier erscheint, wer eine Sitzung beginnt.",
     lost: "Keine Verbindung zum Server: Läuft pldf cockpit noch? Die Fahrten gehen von selbst weiter.",
   },
 });
@@ -55,10 +57,17 @@ export class Desk {
     const watched = new Watched(participant);
     const { texts, road, tell } = this.study;
     const abort = (/** @type {string} */ reason) => tell({ kind: "abort", participant, reason });
-    const card = new DeskCard(watched, { texts, limit_mps: road.limit_mps, nodes: road.nodes, abort });
+    const card = new DeskCard(watched, {
+      texts,
+      limit_mps: road.limit_mps,
+      nodes: road.nodes,
+      abort,
+    });
     const person = { watched, card };
     this.people.set(participant, person);
-    const names = [...this.people.keys()].sort((a, b) => a.localeCompare(b, "en", { numeric: true }));
+    const names = [...this.people.keys()].sort((a, b) =>
+      a.localeCompare(b, "en", { numeric: true }),
+    );
     const next = this.people.get(names[names.indexOf(participant) + 1] ?? "");
     this.cards.insertBefore(card.root, next && next !== person ? next.card.root : null);
     this.nobody.hidden = true;

@@ -15,18 +15,48 @@ import { speedText, unitText } from "./units.js";
 
 const words = wording({
   en: {
-    simulator: "Simulator", driving: "driving", paused: "paused", between: "between drives", ended: "ended",
-    silent: "no news", position: "{position} of {of}: {place}", drive: "drive {phase}",
-    speed: "Speed", at: "at {s} of {end} m", why: "The car says", did: "Interventions", none: "none so far",
-    learned: "Learned", places: "{count} places", place: "1 place", stored: "Stored drives", nothing: "none yet",
-    reason: "Reason", cluster: "Instrument cluster in its own window",
+    simulator: "Simulator",
+    driving: "driving",
+    paused: "paused",
+    between: "between drives",
+    ended: "ended",
+    silent: "no news",
+    position: "{position} of {of}: {place}",
+    drive: "drive {phase}",
+    speed: "Speed",
+    at: "at {s} of {end} m",
+    why: "The car says",
+    did: "Interventions",
+    none: "none so far",
+    learned: "Learned",
+    places: "{count} places",
+    place: "1 place",
+    stored: "Stored drives",
+    nothing: "none yet",
+    reason: "Reason",
+    cluster: "Instrument cluster in its own window",
   },
   de: {
-    simulator: "Simulator", driving: "fährt", paused: "angehalten", between: "zwischen Fahrten", ended: "beendet",
-    silent: "keine Nachricht", position: "{position} von {of}: {place}", drive: "Fahrt {phase}",
-    speed: "Tempo", at: "bei {s} von {end} m", why: "Das Auto sagt", did: "Eingriffe", none: "bisher keine",
-    learned: "Gelernt", places: "{count} Stellen", place: "1 Stelle", stored: "Gespeicherte Fahrten", nothing: "noch keine",
-    reason: "Grund", cluster: "Kombiinstrument in eigenem Fenster",
+    simulator: "Simulator",
+    driving: "fährt",
+    paused: "angehalten",
+    between: "zwischen Fahrten",
+    ended: "beendet",
+    silent: "keine Nachricht",
+    position: "{position} von {of}: {place}",
+    drive: "Fahrt {phase}",
+    speed: "Tempo",
+    at: "bei {s} von {end} m",
+    why: "Das Auto sagt",
+    did: "Eingriffe",
+    none: "bisher keine",
+    learned: "Gelernt",
+    places: "{count} Stellen",
+    place: "1 Stelle",
+    stored: "Gespeicherte Fahrten",
+    nothing: "noch keine",
+    reason: "Grund",
+    cluster: "Kombiinstrument in eigenem Fenster",
   },
 });
 
@@ -40,20 +70,36 @@ export class DeskCard {
     this.watched = watched;
     this.desk = desk;
     const { participant } = watched;
-    this.state = element("span", { "class": "desk-state", "role": "status" });
+    this.state = element("span", { class: "desk-state", role: "status" });
     this.place = element("p", { class: "desk-place" });
     this.facts = Object.fromEntries(
-      ["speed", "why", "did", "learned", "stored", "reason"].map((name) => [name, element("dd", {})]),
+      ["speed", "why", "did", "learned", "stored", "reason"].map((name) => [
+        name,
+        element("dd", {}),
+      ]),
     );
     const plot = element("div", { class: "after-plot" });
     this.form = new AbortForm(desk.abort);
     this.root = element(
-      "section", { "class": "desk-card", "aria-label": participant || words("simulator") },
-      element("header", {}, element("h2", {}, participant || words("simulator")), this.state, this.place),
-      element("dl", {}, ...this.listed()), plot,
+      "section",
+      { class: "desk-card", "aria-label": participant || words("simulator") },
       element(
-        "footer", {},
-        element("a", { href: `cluster.html?participant=${encodeURIComponent(participant)}`, target: "_blank" }, words("cluster")),
+        "header",
+        {},
+        element("h2", {}, participant || words("simulator")),
+        this.state,
+        this.place,
+      ),
+      element("dl", {}, ...this.listed()),
+      plot,
+      element(
+        "footer",
+        {},
+        element(
+          "a",
+          { href: `cluster.html?participant=${encodeURIComponent(participant)}`, target: "_blank" },
+          words("cluster"),
+        ),
         participant !== "" && this.form.root,
       ),
     );
@@ -66,7 +112,9 @@ export class DeskCard {
 
   listed() {
     const names = /** @type {const} */ (["speed", "why", "did", "learned", "stored", "reason"]);
-    return names.map((name) => element("div", {}, element("dt", {}, words(name)), this.facts[name]));
+    return names.map((name) =>
+      element("div", {}, element("dt", {}, words(name)), this.facts[name]),
+    );
   }
 
   /** Show what is known now. @param {number} now_ms as the one of what was told */
@@ -78,14 +126,20 @@ export class DeskCard {
     const silent = state === "driving" && !fresh;
     update(this.root, { "data-state": silent ? "silent" : state });
     say(this.state, words(silent ? "silent" : state));
-    say(this.place, status ? words("position", { ...status }) : words("drive", { phase: this.watched.phase }));
+    say(
+      this.place,
+      status ? words("position", { ...status }) : words("drive", { phase: this.watched.phase }),
+    );
     this.tell("speed", drives ? this.speed(values) : "–");
     const row = drives ? rowOf(this.desk.texts, values) : null;
     this.tell("why", row ? sentenceOf(row, values, language()) : "–");
     const interventions = interventionsOf(frames);
     this.tell("did", actions(interventions) || words("none"));
     const count = status?.learned_places;
-    this.tell("learned", count === undefined ? "–" : count === 1 ? words("place") : words("places", { count }));
+    this.tell(
+      "learned",
+      count === undefined ? "–" : count === 1 ? words("place") : words("places", { count }),
+    );
     this.tell("reason", status?.reason || "–");
     this.form.enable(state === "driving" || state === "paused");
     this.draw(interventions);
@@ -95,7 +149,10 @@ export class DeskCard {
   speed(values) {
     const unit = this.watched.status?.unit ?? "KMH";
     const end = this.watched.status?.end_m ?? this.desk.nodes - 1;
-    const at = words("at", { s: Math.round(Number(values["vehicle.s_m"] ?? 0)), end: Math.round(end) });
+    const at = words("at", {
+      s: Math.round(Number(values["vehicle.s_m"] ?? 0)),
+      end: Math.round(end),
+    });
     return `${speedText(Number(values["vehicle.speed_mps"] ?? NaN), unit)} ${unitText(unit)} ${at}`;
   }
 
@@ -121,10 +178,13 @@ export class DeskCard {
     this.plot = this.plotFor(unit);
     this.plot.show(
       {
-        limit_mps, base_mps: perMetre(frames, nodes, "base_speed_mps"),
-        driven_mps: perMetre(frames, nodes), last_mps: perMetre(frames, nodes, "target_speed_mps"),
+        limit_mps,
+        base_mps: perMetre(frames, nodes, "base_speed_mps"),
+        driven_mps: perMetre(frames, nodes),
+        last_mps: perMetre(frames, nodes, "target_speed_mps"),
       },
-      interventions, [],
+      interventions,
+      [],
     );
   }
 

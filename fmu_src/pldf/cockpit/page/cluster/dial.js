@@ -25,16 +25,22 @@ export class Dial {
   /** @param {Unit} unit */
   constructor(unit) {
     this.unit = unit;
-    this.arc = svg("path", { "class": "dial-speed" });
-    this.lesson = svg("path", { "class": "dial-lesson" });
-    this.limit = svg("path", { "class": "dial-limit", "d": `M100 ${100 - RADIUS - 9}v18` });
-    this.set = svg("path", { "class": "dial-set", "d": `M100 ${100 - RADIUS - 9}l-7-13h14z` });
-    this.number = svg("text", { "class": "dial-number", "x": 100, "y": 112 });
+    this.arc = svg("path", { class: "dial-speed" });
+    this.lesson = svg("path", { class: "dial-lesson" });
+    this.limit = svg("path", { class: "dial-limit", d: `M100 ${100 - RADIUS - 9}v18` });
+    this.set = svg("path", { class: "dial-set", d: `M100 ${100 - RADIUS - 9}l-7-13h14z` });
+    this.number = svg("text", { class: "dial-number", x: 100, y: 112 });
     this.drawing = svg(
-      "svg", { "class": "dial", "viewBox": "-6 -6 212 156", "aria-hidden": "true" },
-      svg("path", { "class": "dial-track", "d": arc(BEGIN_DEG, END_DEG) }),
-      this.lesson, this.arc, ...ticks(unit), this.limit, this.set, this.number,
-      svg("text", { "class": "dial-unit", "x": 100, "y": 138 }, unitText(unit)),
+      "svg",
+      { class: "dial", viewBox: "-6 -6 212 156", "aria-hidden": "true" },
+      svg("path", { class: "dial-track", d: arc(BEGIN_DEG, END_DEG) }),
+      this.lesson,
+      this.arc,
+      ...ticks(unit),
+      this.limit,
+      this.set,
+      this.number,
+      svg("text", { class: "dial-unit", x: 100, y: 138 }, unitText(unit)),
     );
   }
 
@@ -79,9 +85,9 @@ function ticks(unit) {
     const degrees = BEGIN_DEG + (speed / end) * (END_DEG - BEGIN_DEG);
     const [x, y] = point(degrees, RADIUS - 24);
     const line = `M${point(degrees, RADIUS - 6).join(" ")}L${point(degrees, RADIUS - 12).join(" ")}`;
-    drawn.push(svg("path", { "class": "dial-tick", "d": line }));
+    drawn.push(svg("path", { class: "dial-tick", d: line }));
     if ((speed / tick) % 2 === 0) {
-      drawn.push(svg("text", { "class": "dial-label", "x": x, "y": y + 4 }, String(speed)));
+      drawn.push(svg("text", { class: "dial-label", x: x, y: y + 4 }, String(speed)));
     }
   }
   return drawn;

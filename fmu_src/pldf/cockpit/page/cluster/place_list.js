@@ -18,12 +18,22 @@ import { say, update } from "./svg.js";
 
 const words = wording({
   en: {
-    keep: "Keep", forget: "Forget", look: "Show place {number}", choice: "Place {number}",
-    gone: "forgotten", along: "forgotten along with its neighbour", all: "Show the whole road",
+    keep: "Keep",
+    forget: "Forget",
+    look: "Show place {number}",
+    choice: "Place {number}",
+    gone: "forgotten",
+    along: "forgotten along with its neighbour",
+    all: "Show the whole road",
   },
   de: {
-    keep: "Behalten", forget: "Vergessen", look: "Stelle {number} zeigen", choice: "Stelle {number}",
-    gone: "vergessen", along: "mit der Nachbarstelle vergessen", all: "Ganze Strecke zeigen",
+    keep: "Behalten",
+    forget: "Vergessen",
+    look: "Stelle {number} zeigen",
+    choice: "Stelle {number}",
+    gone: "vergessen",
+    along: "mit der Nachbarstelle vergessen",
+    all: "Ganze Strecke zeigen",
   },
 });
 
@@ -47,9 +57,11 @@ export class PlaceList {
     /** @type {Row[]} */
     this.rows = places.map((place, i) => this.row(place, i + 1, unit, known));
     this.root = element(
-      "div", { class: "after-places" },
+      "div",
+      { class: "after-places" },
       places.length > 0 && element("ol", {}, ...this.rows.map((row) => row.item)),
-      places.length > 0 && element("button", { type: "button", onclick: () => answers.choose(null) }, words("all")),
+      places.length > 0 &&
+        element("button", { type: "button", onclick: () => answers.choose(null) }, words("all")),
     );
   }
 
@@ -61,21 +73,34 @@ export class PlaceList {
    * @returns {Row}
    */
   row(place, number, unit, known) {
-    const picture = place.by === "lever" ? "learned-set-speed" : place.change_mps > 0 ? "learned-faster" : "learned-slower";
+    const picture =
+      place.by === "lever"
+        ? "learned-set-speed"
+        : place.change_mps > 0
+          ? "learned-faster"
+          : "learned-slower";
     const radios = this.answers.change ? [this.radio(number, true), this.radio(number, false)] : [];
     const state = element("span", { class: "after-state" });
     const item = element(
-      "li", { class: "after-place" },
+      "li",
+      { class: "after-place" },
       element(
-        "button", {
-          "type": "button", "class": "after-look", "aria-label": words("look", { number }),
-          "onclick": () => this.answers.choose(place),
-        }, String(number),
+        "button",
+        {
+          type: "button",
+          class: "after-look",
+          "aria-label": words("look", { number }),
+          onclick: () => this.answers.choose(place),
+        },
+        String(number),
       ),
       icon(picture),
       element(
-        "div", { class: "after-lesson" }, element("strong", {}, lesson(place, unit)),
-        element("span", {}, `${whereabouts(place)} · ${since(place, known)}`), state,
+        "div",
+        { class: "after-lesson" },
+        element("strong", {}, lesson(place, unit)),
+        element("span", {}, `${whereabouts(place)} · ${since(place, known)}`),
+        state,
       ),
       radios.length > 0 && this.choice(number, radios),
     );
@@ -85,16 +110,27 @@ export class PlaceList {
   /** @param {number} number @param {HTMLInputElement[]} radios */
   choice(number, radios) {
     return element(
-      "fieldset", { class: "after-choice" },
+      "fieldset",
+      { class: "after-choice" },
       element("legend", { class: "cluster-spoken" }, words("choice", { number })),
-      ...radios.map((radio) => element("label", {}, radio, element("span", {}, words(radio.value === "keep" ? "keep" : "forget")))),
+      ...radios.map((radio) =>
+        element(
+          "label",
+          {},
+          radio,
+          element("span", {}, words(radio.value === "keep" ? "keep" : "forget")),
+        ),
+      ),
     );
   }
 
   /** @param {number} number @param {boolean} keeps @returns {HTMLInputElement} */
   radio(number, keeps) {
     const radio = element("input", {
-      type: "radio", name: `${this.group}-${number}`, value: keeps ? "keep" : "forget", checked: keeps,
+      type: "radio",
+      name: `${this.group}-${number}`,
+      value: keeps ? "keep" : "forget",
+      checked: keeps,
       onchange: () => void this.changed(),
     });
     return /** @type {HTMLInputElement} */ (radio);
@@ -107,7 +143,9 @@ export class PlaceList {
     this.rows.forEach((row, i) => {
       const place = this.places[i];
       const gone = place !== undefined && this.forgotten.includes(place);
-      row.radios.forEach((radio) => { radio.checked = (radio.value === "forget") === gone; });
+      row.radios.forEach((radio) => {
+        radio.checked = (radio.value === "forget") === gone;
+      });
     });
     this.enable(true);
   }
@@ -116,7 +154,8 @@ export class PlaceList {
   enable(on) {
     const focused = document.activeElement;
     update(this.root, { "aria-busy": String(!on) });
-    for (const radio of this.rows.flatMap((row) => row.radios)) radio.disabled = !on && radio !== focused;
+    for (const radio of this.rows.flatMap((row) => row.radios))
+      radio.disabled = !on && radio !== focused;
   }
 
   /** @param {(place: Place) => boolean} gone */

@@ -19,7 +19,8 @@ export class RouteMap {
     this.places = svg("g");
     const [begin, end] = [points[0] ?? [0, 0], points.at(-1) ?? [0, 0]];
     this.drawing = svg(
-      "svg", { "class": "map", "viewBox": `0 0 ${WIDTH} ${height}`, "role": "img", "aria-label": label },
+      "svg",
+      { class: "map", viewBox: `0 0 ${WIDTH} ${height}`, role: "img", "aria-label": label },
       svg("path", { class: "map-road", d: this.path(0, points.length - 1) }),
       svg("circle", { class: "map-begin", cx: begin[0], cy: begin[1], r: 9 }),
       svg("rect", { class: "map-end", x: end[0] - 8, y: end[1] - 8, width: 16, height: 16 }),
@@ -36,18 +37,20 @@ export class RouteMap {
    */
   show(places, forgotten) {
     const state = places.map((place, i) => ({
-      "data-kind": kindOf(place), "data-forgotten": String(forgotten(place)), "data-number": i + 1,
+      "data-kind": kindOf(place),
+      "data-forgotten": String(forgotten(place)),
+      "data-number": i + 1,
     }));
     const lines = places.map((place, i) =>
-      svg("path", { "class": "map-place", "d": this.path(place.from_m, place.to_m), ...state[i] }),
+      svg("path", { class: "map-place", d: this.path(place.from_m, place.to_m), ...state[i] }),
     );
     const wideFirst = lines.filter((_, i) => places[i]?.by === "lever");
     this.places.replaceChildren(...wideFirst, ...lines.filter((line) => !wideFirst.includes(line)));
     places.forEach((place, i) => {
       const [x, y] = this.beside(place.at_m, i);
       this.places.append(
-        svg("circle", { "class": "map-badge", "cx": x, "cy": y, "r": BADGE, ...state[i] }),
-        svg("text", { "class": "map-number", "x": x, "y": y + 7, ...state[i] }, String(i + 1)),
+        svg("circle", { class: "map-badge", cx: x, cy: y, r: BADGE, ...state[i] }),
+        svg("text", { class: "map-number", x: x, y: y + 7, ...state[i] }, String(i + 1)),
       );
     });
   }
@@ -55,7 +58,9 @@ export class RouteMap {
   /** @param {number | null} number of the place that is looked at */
   choose(number) {
     for (const drawn of this.places.children) {
-      update(drawn, { "data-chosen": String(drawn.getAttribute("data-number") === String(number)) });
+      update(drawn, {
+        "data-chosen": String(drawn.getAttribute("data-number") === String(number)),
+      });
     }
   }
 
@@ -71,7 +76,10 @@ export class RouteMap {
     const drawn = [];
     for (let i = from_m; i < to_m; i += STEP_M) drawn.push(this.points[i]);
     drawn.push(this.points[to_m]);
-    return `M${drawn.filter((point) => point !== undefined).map((point) => point.join(" ")).join("L")}`;
+    return `M${drawn
+      .filter((point) => point !== undefined)
+      .map((point) => point.join(" "))
+      .join("L")}`;
   }
 
   /**
@@ -114,7 +122,8 @@ function level({ x_m, y_m }) {
   const scale = (WIDTH - 2 * MARGIN) / Math.max(right - left, 1);
   return {
     points: along.map((value, i) => [
-      round(MARGIN + scale * (value - left)), round(MARGIN + scale * ((across[i] ?? 0) - top)),
+      round(MARGIN + scale * (value - left)),
+      round(MARGIN + scale * ((across[i] ?? 0) - top)),
     ]),
     height: round(2 * MARGIN + scale * (bottom - top)),
   };
@@ -127,13 +136,18 @@ function direction(x, y) {
   const yy = mean(y.map((value) => (value - my) ** 2));
   const xy = mean(x.map((value, i) => (value - mx) * ((y[i] ?? 0) - my)));
   const angle = 0.5 * Math.atan2(2 * xy, xx - yy);
-  const forward = Math.cos(angle) * ((x.at(-1) ?? 0) - (x[0] ?? 0)) + Math.sin(angle) * ((y.at(-1) ?? 0) - (y[0] ?? 0));
+  const forward =
+    Math.cos(angle) * ((x.at(-1) ?? 0) - (x[0] ?? 0)) +
+    Math.sin(angle) * ((y.at(-1) ?? 0) - (y[0] ?? 0));
   return forward < 0 ? angle + Math.PI : angle; // it begins on the left
 }
 
 /** @param {number[]} values @returns {[number, number]} */
 function ends(values) {
-  return values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
+  return values.reduce(
+    ([low, high], value) => [Math.min(low, value), Math.max(high, value)],
+    [Infinity, -Infinity],
+  );
 }
 
 /** @param {number[]} values */

@@ -23,12 +23,18 @@ const LOOK_MS = 500;
 
 const words = wording({
   en: {
-    title: "Instrument cluster", waiting: "Waiting for a drive", stale: "No news from the drive",
-    lost: "No connection to the server: is pldf cockpit still running?", paused: "Paused",
+    title: "Instrument cluster",
+    waiting: "Waiting for a drive",
+    stale: "No news from the drive",
+    lost: "No connection to the server: is pldf cockpit still running?",
+    paused: "Paused",
   },
   de: {
-    title: "Kombiinstrument", waiting: "Wartet auf eine Fahrt", stale: "Keine Nachricht von der Fahrt",
-    lost: "Keine Verbindung zum Server: Läuft pldf cockpit noch?", paused: "Angehalten",
+    title: "Kombiinstrument",
+    waiting: "Wartet auf eine Fahrt",
+    stale: "Keine Nachricht von der Fahrt",
+    lost: "Keine Verbindung zum Server: Läuft pldf cockpit noch?",
+    paused: "Angehalten",
   },
 });
 
@@ -70,7 +76,7 @@ export class SecondScreen {
     this.wanted = wanted;
     this.language = wanted.language ?? language;
     this.place = element("div", { class: "second-cluster" });
-    this.note = element("p", { "class": "second-note", "role": "status" });
+    this.note = element("p", { class: "second-note", role: "status" });
     this.connected = true;
     /** @type {Watched | null} */
     this.drive = null;
@@ -86,7 +92,8 @@ export class SecondScreen {
   /** @param {LiveMessage} message */
   take(message) {
     const { participant } = this.wanted;
-    if (message.kind === "abort" || (participant !== null && message.participant !== participant)) return;
+    if (message.kind === "abort" || (participant !== null && message.participant !== participant))
+      return;
     if (this.drive?.participant !== (message.participant ?? "")) {
       this.drive = new Watched(message.participant ?? "");
     }
@@ -109,8 +116,15 @@ export class SecondScreen {
       this.wanted.language ?? status?.language ?? this.language,
     );
     this.cluster?.show(fresh && this.drive ? this.drive.values : {});
-    const note = !this.connected ? words("lost") : this.drive === null ? words("waiting")
-      : status?.state === "paused" ? words("paused") : fresh ? "" : words("stale");
+    const note = !this.connected
+      ? words("lost")
+      : this.drive === null
+        ? words("waiting")
+        : status?.state === "paused"
+          ? words("paused")
+          : fresh
+            ? ""
+            : words("stale");
     if (this.note.textContent !== note) fill(this.note, note);
   }
 

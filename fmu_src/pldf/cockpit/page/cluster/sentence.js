@@ -21,8 +21,18 @@ const NUMBERS = ["speed", "base", "limit", "drive"];
 // Who has to act now, and what answers a button, is told to everybody: nobody could drive without.
 // All other rows explain why the car does what it does.
 const OPERATION = new Set([
-  "OVERRIDE", "STANDBY", "FAULT", "OFF", "HELD", "TAKE_OVER",
-  "FORGOTTEN", "NOTHING_TO_FORGET", "UNDONE", "NOTHING_TO_UNDO", "PAUSED", "RESUMED",
+  "OVERRIDE",
+  "STANDBY",
+  "FAULT",
+  "OFF",
+  "HELD",
+  "TAKE_OVER",
+  "FORGOTTEN",
+  "NOTHING_TO_FORGET",
+  "UNDONE",
+  "NOTHING_TO_UNDO",
+  "PAUSED",
+  "RESUMED",
 ]);
 
 /**

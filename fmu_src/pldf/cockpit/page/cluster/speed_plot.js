@@ -22,18 +22,32 @@ const BLACK = "#000000";
 const GREY = "#666666";
 const BLUE = "#0072B2";
 const VERMILLION = "#D55E00";
-const FILLS = { gas: "rgb(0 158 115 / 32%)", brake: "rgb(213 94 0 / 30%)", set_speed: "rgb(204 121 167 / 32%)" };
+const FILLS = {
+  gas: "rgb(0 158 115 / 32%)",
+  brake: "rgb(213 94 0 / 30%)",
+  set_speed: "rgb(204 121 167 / 32%)",
+};
 const HEIGHT_PX = 300;
 
 const words = wording({
   en: {
-    distance: "Distance (km)", speed: "Speed ({unit})",
-    limit: "Limit", base: "Without lessons", driven: "Driven", next: "Next drive", profile: "Profile",
+    distance: "Distance (km)",
+    speed: "Speed ({unit})",
+    limit: "Limit",
+    base: "Without lessons",
+    driven: "Driven",
+    next: "Next drive",
+    profile: "Profile",
     label: "Speed over distance: limit, speed without lessons, driven, learned",
   },
   de: {
-    distance: "Weg (km)", speed: "Tempo ({unit})",
-    limit: "Tempolimit", base: "Ohne Gelerntes", driven: "Gefahren", next: "Nächste Fahrt", profile: "Profil",
+    distance: "Weg (km)",
+    speed: "Tempo ({unit})",
+    limit: "Tempolimit",
+    base: "Ohne Gelerntes",
+    driven: "Gefahren",
+    next: "Nächste Fahrt",
+    profile: "Profil",
     label: "Tempo über dem Weg: Limit, Tempo ohne Gelerntes, gefahrenes und gelerntes Tempo",
   },
 });
@@ -78,7 +92,13 @@ export class SpeedPlot {
       ],
       series: [
         { label: "km", value: (_, value) => (value === null ? "–" : value.toFixed(2)) },
-        { label: words("limit"), stroke: GREY, width: 2, paths: uPlot.paths.stepped?.({ align: 1 }), value: speed },
+        {
+          label: words("limit"),
+          stroke: GREY,
+          width: 2,
+          paths: uPlot.paths.stepped?.({ align: 1 }),
+          value: speed,
+        },
         { label: words("base"), stroke: BLUE, width: 1.5, dash: [6, 4], value: speed },
         { label: words("driven"), stroke: BLACK, width: 1.5, value: speed },
         { label: words(this.last), stroke: VERMILLION, width: 2.5, value: speed },
@@ -138,7 +158,8 @@ export class SpeedPlot {
     this.places.forEach((place, i) => {
       const x = this.pixel(place.at_m);
       const height = (1 + (i % 2)) * 16 * devicePixelRatio;
-      if (x >= bbox.left && x <= bbox.left + bbox.width) ctx.fillText(String(i + 1), x, bbox.top + height);
+      if (x >= bbox.left && x <= bbox.left + bbox.width)
+        ctx.fillText(String(i + 1), x, bbox.top + height);
     });
     ctx.restore();
   }

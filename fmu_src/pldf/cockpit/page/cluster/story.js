@@ -10,26 +10,40 @@ import { changeText, inUnit, speedText, unitText } from "./units.js";
 
 const words = wording({
   en: {
-    gas: "gas pedal {count}×", brake: "brake {count}×", set_speed: "set speed {count}×",
-    nothing: "You let the car drive by itself.", did: "You acted: {list}.",
+    gas: "gas pedal {count}×",
+    brake: "brake {count}×",
+    set_speed: "set speed {count}×",
+    nothing: "You let the car drive by itself.",
+    did: "You acted: {list}.",
     noneLearned: "Nothing is learned on this road yet.",
-    oneLearned: "1 place is learned.", learned: "{count} places are learned.",
+    oneLearned: "1 place is learned.",
+    learned: "{count} places are learned.",
     waits: "{count} more wait to be shown again.",
-    faster: "{change}: {speed} instead of {base}", between: "{from} to {to} km",
+    faster: "{change}: {speed} instead of {base}",
+    between: "{from} to {to} km",
     waiting: "{change}: noted, not driven before you have shown it again",
     lever: "{change}: set speed {speed} at limit {limit}",
-    fresh: "new from this drive", drive: "learned in drive {drive}", shown: "shown in {count} of your drives",
+    fresh: "new from this drive",
+    drive: "learned in drive {drive}",
+    shown: "shown in {count} of your drives",
   },
   de: {
-    gas: "Gaspedal {count}×", brake: "Bremse {count}×", set_speed: "Setztempo {count}×",
-    nothing: "Sie haben das Auto fahren lassen.", did: "Sie haben eingegriffen: {list}.",
+    gas: "Gaspedal {count}×",
+    brake: "Bremse {count}×",
+    set_speed: "Setztempo {count}×",
+    nothing: "Sie haben das Auto fahren lassen.",
+    did: "Sie haben eingegriffen: {list}.",
     noneLearned: "Auf dieser Strecke ist noch nichts gelernt.",
-    oneLearned: "1 Stelle ist gelernt.", learned: "{count} Stellen sind gelernt.",
+    oneLearned: "1 Stelle ist gelernt.",
+    learned: "{count} Stellen sind gelernt.",
     waits: "{count} weitere warten darauf, noch einmal gezeigt zu werden.",
-    faster: "{change}: {speed} statt {base}", between: "{from} bis {to} km",
+    faster: "{change}: {speed} statt {base}",
+    between: "{from} bis {to} km",
     waiting: "{change}: gemerkt; gefahren wird es erst, wenn Sie es wieder gezeigt haben",
     lever: "{change}: Setztempo {speed} bei Tempolimit {limit}",
-    fresh: "neu aus dieser Fahrt", drive: "gelernt in Fahrt {drive}", shown: "in {count} Ihrer Fahrten gezeigt",
+    fresh: "neu aus dieser Fahrt",
+    drive: "gelernt in Fahrt {drive}",
+    shown: "in {count} Ihrer Fahrten gezeigt",
   },
 });
 
@@ -77,9 +91,13 @@ export function summary(interventions, places) {
   const known = places.length - waiting;
   return [
     list === "" ? words("nothing") : words("did", { list }),
-    known === 0 ? words("noneLearned") : words(known === 1 ? "oneLearned" : "learned", { count: known }),
+    known === 0
+      ? words("noneLearned")
+      : words(known === 1 ? "oneLearned" : "learned", { count: known }),
     waiting > 0 && words("waits", { count: waiting }),
-  ].filter(Boolean).join(" ");
+  ]
+    .filter(Boolean)
+    .join(" ");
 }
 
 /**

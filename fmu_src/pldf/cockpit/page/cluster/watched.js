@@ -33,7 +33,12 @@ export class Watched {
     const before = this.frames.at(-1)?.time_s ?? -Infinity;
     if (message.time_s < before || (message.phase ?? "") !== this.phase) this.frames = [];
     this.phase = message.phase ?? "";
-    this.frames.push({ time_s: message.time_s, lateral_m: 0, heading_rad: 0, values: message.values });
+    this.frames.push({
+      time_s: message.time_s,
+      lateral_m: 0,
+      heading_rad: 0,
+      values: message.values,
+    });
     this.told_ms = now_ms;
   }
 

@@ -4,8 +4,14 @@ import { element, fill } from "../dom.js";
 import { wording } from "../language.js";
 
 const words = wording({
-  en: { failed: "This page cannot start: {reason}. Is pldf cockpit still running? Then load the page again." },
-  de: { failed: "Diese Seite kann nicht beginnen: {reason}. Läuft pldf cockpit noch? Dann die Seite neu laden." },
+  en: {
+    failed:
+      "This page cannot start: {reason}. Is pldf cockpit still running? Then load the page again.",
+  },
+  de: {
+    failed:
+      "Diese Seite kann nicht beginnen: {reason}. Läuft pldf cockpit noch? Dann die Seite neu laden.",
+  },
 });
 
 /**

@@ -49,7 +49,9 @@ export function decoded(told) {
  * @returns {import("../types.js").Files}
  */
 function filesOf(texts) {
-  return Object.fromEntries(Object.entries(texts ?? {}).map(([path, text]) => [path, bytesOf(text)]));
+  return Object.fromEntries(
+    Object.entries(texts ?? {}).map(([path, text]) => [path, bytesOf(text)]),
+  );
 }
 
 /**

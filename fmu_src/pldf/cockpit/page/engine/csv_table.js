@@ -54,7 +54,8 @@ export function numberOf(cell) {
 
 /** @param {string} text */
 function separatorOf(text) {
-  const header = text.split(/\r\n|\r|\n/).find((line) => line.trim() !== "" && line[0] !== "#") ?? "";
+  const header =
+    text.split(/\r\n|\r|\n/).find((line) => line.trim() !== "" && line[0] !== "#") ?? "";
   /** @param {string} separator */
   const count = (separator) => header.split(separator).length;
   return SEPARATORS.reduce((best, other) => (count(other) > count(best) ? other : best));

@@ -63,7 +63,7 @@ export class Instance {
 
   #collect() {
     const status = this.#module.allocate(4);
-    for (let text = 0; (text = this.#module.call("page_message", status)) !== 0; ) {
+    for (let text = 0; (text = this.#module.call("page_message", status)) !== 0;) {
       const level = LEVELS[this.#module.uint32(status)];
       this.#told.push({ level, text: this.#module.text(text) });
     }
@@ -173,7 +173,9 @@ export class Instance {
     const other = variables.find((v) => v.kind !== kind || !(kind in KINDS));
     if (other) throw new RangeError(`${other.name} is ${other.kind}, in a batch of ${kind}`);
     const references = variables.map((v) => v.reference);
-    return new Batch(this.#module, this.#component, kind, references, (call) => this.#refused(call));
+    return new Batch(this.#module, this.#component, kind, references, (call) =>
+      this.#refused(call),
+    );
   }
 
   /** @param {number} [start_s] */

@@ -24,8 +24,11 @@ const OFFSET_TOLERANCE_MPS = 0.5 / 3.6; // learning.offset_tolerance_mps: a smal
  */
 export function interventionsOf(frames) {
   const found = [...pedalRuns(frames), ...leverRuns(frames)].map(([kind, first, last]) => ({
-    kind, first, last,
-    from_m: value(frames, first, "vehicle.s_m"), to_m: value(frames, last, "vehicle.s_m"),
+    kind,
+    first,
+    last,
+    from_m: value(frames, first, "vehicle.s_m"),
+    to_m: value(frames, last, "vehicle.s_m"),
   }));
   return found.sort((a, b) => a.first - b.first);
 }
@@ -81,7 +84,9 @@ function leverRuns(frames) {
     (_, i) => Math.abs(value(frames, i, "set_speed_offset_mps")) > OFFSET_TOLERANCE_MPS,
   );
   return trueRuns(moved).map(([first, behind]) => [
-    "set_speed", first, Math.min(behind, frames.length - 1),
+    "set_speed",
+    first,
+    Math.min(behind, frames.length - 1),
   ]);
 }
 

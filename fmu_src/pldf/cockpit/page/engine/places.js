@@ -36,9 +36,13 @@ export function placesOf(profile, limit_mps, known = profile.iterations.length -
   const iteration = iterationOf(profile);
   const before = columnOf(iterationOf(profile, known), "learned_mps");
   const places = [
-    ...pedalPlaces(iteration, before, known), ...leverPlaces(profile, iteration, limit_mps),
+    ...pedalPlaces(iteration, before, known),
+    ...leverPlaces(profile, iteration, limit_mps),
     ...waitingPlaces(iteration),
-  ].map((found) => ({ ...found, limit_mps: at(limit_mps, Math.min(found.at_m, limit_mps.length - 1)) }));
+  ].map((found) => ({
+    ...found,
+    limit_mps: at(limit_mps, Math.min(found.at_m, limit_mps.length - 1)),
+  }));
   return places.sort((a, b) => a.from_m - b.from_m || a.to_m - b.to_m);
 }
 
@@ -90,10 +94,18 @@ function leverPlaces(profile, iteration, limit) {
 function waitingPlaces(iteration) {
   const base = columnOf(iteration, "base_mps");
   return ["faster", "slower"].flatMap((sign) => [
-    ...waiting(iteration, "pedal", columnOf(iteration, `pending_${sign}`),
-      columnOf(iteration, `pending_${sign}_mps`).map((speed, i) => speed - at(base, i))),
-    ...waiting(iteration, "lever", columnOf(iteration, `offset_pending_${sign}`),
-      columnOf(iteration, `offset_pending_${sign}_mps`)),
+    ...waiting(
+      iteration,
+      "pedal",
+      columnOf(iteration, `pending_${sign}`),
+      columnOf(iteration, `pending_${sign}_mps`).map((speed, i) => speed - at(base, i)),
+    ),
+    ...waiting(
+      iteration,
+      "lever",
+      columnOf(iteration, `offset_pending_${sign}`),
+      columnOf(iteration, `offset_pending_${sign}_mps`),
+    ),
   ]);
 }
 
@@ -127,8 +139,15 @@ function place(by, iteration, change_mps, from_m, to_m) {
   const [learned, base] = speeds(iteration);
   const lessons = columnOf(iteration, "lessons").subarray(from_m, to_m + 1);
   return {
-    by, waits: false, from_m, to_m, at_m: most, change_mps: at(change_mps, most),
-    speed_mps: at(learned, most), base_mps: at(base, most), lessons: lessons.reduce((a, b) => Math.max(a, b), 0),
+    by,
+    waits: false,
+    from_m,
+    to_m,
+    at_m: most,
+    change_mps: at(change_mps, most),
+    speed_mps: at(learned, most),
+    base_mps: at(base, most),
+    lessons: lessons.reduce((a, b) => Math.max(a, b), 0),
   };
 }
 

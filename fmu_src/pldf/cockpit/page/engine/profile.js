@@ -1,6 +1,14 @@
 // Profiles as the functions keep them (docs/profile-format.md), read and checked.
 
-import { CHECKSUM_SIZE, COLUMNS, FILE_MAX, Lines, NOTE, NUMBER, readBlock } from "./profile_parts.js";
+import {
+  CHECKSUM_SIZE,
+  COLUMNS,
+  FILE_MAX,
+  Lines,
+  NOTE,
+  NUMBER,
+  readBlock,
+} from "./profile_parts.js";
 import { refuse } from "./profile_refused.js";
 
 const KINDS = ["drive", "learn", "forget", "undo", "rollback"];
@@ -114,7 +122,10 @@ function head2(lines, expected) {
   const columns = [];
   while (lines.nextIs("block ")) columns.push(block(lines, columns));
   return {
-    kind: /** @type {Kind} */ (kind), interventions: Number(interventions), note: note ?? "", columns,
+    kind: /** @type {Kind} */ (kind),
+    interventions: Number(interventions),
+    note: note ?? "",
+    columns,
   };
 }
 
@@ -156,5 +167,7 @@ function column(name) {
  * @param {Float64Array | undefined} b
  */
 function same(a, b) {
-  return a === b || (a !== undefined && b !== undefined && a.every((value, i) => Object.is(value, b[i])));
+  return (
+    a === b || (a !== undefined && b !== undefined && a.every((value, i) => Object.is(value, b[i])))
+  );
 }

@@ -22,12 +22,25 @@ export const NOTE = "(?: ([!-~](?:[ -~]{0,78}[!-~])?))?";
 
 /** Of an iteration, in the order of its blocks. */
 export const COLUMNS = [
-  "base_mps", "learned_mps", "offset_mps", "drive", "intervention", "lessons", "bound",
-  "evidence_faster", "evidence_slower",
-  "pending_faster", "pending_slower", "pending_faster_mps", "pending_slower_mps",
-  "offset_evidence_faster", "offset_evidence_slower",
-  "offset_pending_faster", "offset_pending_slower",
-  "offset_pending_faster_mps", "offset_pending_slower_mps",
+  "base_mps",
+  "learned_mps",
+  "offset_mps",
+  "drive",
+  "intervention",
+  "lessons",
+  "bound",
+  "evidence_faster",
+  "evidence_slower",
+  "pending_faster",
+  "pending_slower",
+  "pending_faster_mps",
+  "pending_slower_mps",
+  "offset_evidence_faster",
+  "offset_evidence_slower",
+  "offset_pending_faster",
+  "offset_pending_slower",
+  "offset_pending_faster_mps",
+  "offset_pending_slower_mps",
 ].map(columnOf);
 
 /** @param {string} name @returns {Column} */

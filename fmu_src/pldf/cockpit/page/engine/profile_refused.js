@@ -18,9 +18,11 @@ const words = wording({
     newer: "Eine neuere Ausgabe hat dieses Profil geschrieben. Zum Lesen bitte aktualisieren.",
     truncated: "Das Profil ist abgeschnitten. Bitte die Datei noch einmal kopieren.",
     longer: "Hinter dem Ende des Profils steht noch etwas. Bitte die Datei noch einmal kopieren.",
-    damaged: "Das Profil ist beschädigt: Die Prüfsumme stimmt nicht. Bitte die Datei noch einmal kopieren.",
+    damaged:
+      "Das Profil ist beschädigt: Die Prüfsumme stimmt nicht. Bitte die Datei noch einmal kopieren.",
     line: "Das Profil ist beschädigt: Der Kopf ist nicht, wie er sein soll. Bitte die Datei noch einmal kopieren.",
-    value: "Im Profil steht ein Wert, den es nicht geben kann. Bitte die Datei noch einmal kopieren.",
+    value:
+      "Im Profil steht ein Wert, den es nicht geben kann. Bitte die Datei noch einmal kopieren.",
     place: "({where})",
   },
 });

@@ -74,7 +74,15 @@ function profileLines(name, profile, places_m, unit) {
   const values = (column) =>
     places_m.map((s_m) => (s_m < column.length ? inUnit(column[s_m] ?? 0, unit) : null));
   return [
-    { label: `${shortName(name)}, ${say("learned")}`, values: values(columnOf(newest, "learned_mps")), dashed: false },
-    { label: `${shortName(name)}, ${say("base")}`, values: values(columnOf(newest, "base_mps")), dashed: true },
+    {
+      label: `${shortName(name)}, ${say("learned")}`,
+      values: values(columnOf(newest, "learned_mps")),
+      dashed: false,
+    },
+    {
+      label: `${shortName(name)}, ${say("base")}`,
+      values: values(columnOf(newest, "base_mps")),
+      dashed: true,
+    },
   ];
 }

@@ -55,7 +55,11 @@ function offered(app) {
       if (now !== shown) {
         shown = now;
         const rows = found.map((device) => deviceRow(device, chosen));
-        fill(list, ...rows, keyboardRow(() => chosen({ name: null, calibrate: false })));
+        fill(
+          list,
+          ...rows,
+          keyboardRow(() => chosen({ name: null, calibrate: false })),
+        );
       }
     };
     const timer = setInterval(look, LOOK_MS);

@@ -89,7 +89,10 @@ class DriveScreen {
     fill(app.root, this.root);
     this.scene = new Scene(this.canvas, app.road, app.settings);
     const unit = app.settings.unit === "mph" ? "MPH" : "KMH";
-    this.cluster = new Cluster(cluster, app.bundle.texts, { explanation: options.explanation, unit });
+    this.cluster = new Cluster(cluster, app.bundle.texts, {
+      explanation: options.explanation,
+      unit,
+    });
     this.buttons = options.teaches && options.inputs ? this.teaching(words, options.inputs) : null;
   }
 

@@ -9,8 +9,10 @@ const en = {
   end_drive: "End this drive",
   paused: "Paused",
   paused_hidden: "Paused: the page was hidden.",
-  paused_late: "Paused: the computer was too slow for a moment. The time that was lost is written into the data.",
-  paused_device: "Paused: {device} is not connected any more. Connect it again and press a button on it.",
+  paused_late:
+    "Paused: the computer was too slow for a moment. The time that was lost is written into the data.",
+  paused_device:
+    "Paused: {device} is not connected any more. Connect it again and press a button on it.",
   paused_person: "The car waits as long as you like.",
   camera: "Camera",
   camera_cockpit: "from the driver's seat",
@@ -44,7 +46,8 @@ const en = {
   key_stop: "pause, and stop from there",
   device_title: "How do you drive?",
   change_device: "Another device",
-  device_text: "Press a button on your wheel or gamepad, and it appears here. The keyboard always works.",
+  device_text:
+    "Press a button on your wheel or gamepad, and it appears here. The keyboard always works.",
   keyboard: "Keyboard",
   use: "Drive with it",
   calibrate: "Set up",
@@ -91,8 +94,10 @@ const de = {
   end_drive: "Diese Fahrt beenden",
   paused: "Pause",
   paused_hidden: "Pause: die Seite war verdeckt.",
-  paused_late: "Pause: der Rechner war einen Moment zu langsam. Die verlorene Zeit steht in den Daten.",
-  paused_device: "Pause: {device} ist nicht mehr verbunden. Verbinden Sie das Gerät wieder und drücken Sie eine Taste daran.",
+  paused_late:
+    "Pause: der Rechner war einen Moment zu langsam. Die verlorene Zeit steht in den Daten.",
+  paused_device:
+    "Pause: {device} ist nicht mehr verbunden. Verbinden Sie das Gerät wieder und drücken Sie eine Taste daran.",
   paused_person: "Das Auto wartet, so lange Sie möchten.",
   camera: "Kamera",
   camera_cockpit: "vom Fahrersitz",
@@ -126,7 +131,8 @@ const de = {
   key_stop: "Pause, von dort aus Stopp",
   device_title: "Womit fahren Sie?",
   change_device: "Anderes Gerät",
-  device_text: "Drücken Sie eine Taste an Lenkrad oder Gamepad, dann erscheint es hier. Die Tastatur geht immer.",
+  device_text:
+    "Drücken Sie eine Taste an Lenkrad oder Gamepad, dann erscheint es hier. Die Tastatur geht immer.",
   keyboard: "Tastatur",
   use: "Damit fahren",
   calibrate: "Einrichten",

@@ -67,7 +67,9 @@ function allowDrop(zone, take) {
  */
 async function taken(app, back, files, told) {
   fill(told, element("p", {}, say("reading")));
-  const named = await Promise.all(files.map(async (file) => ({ name: file.name, bytes: await bytesOf(file) })));
+  const named = await Promise.all(
+    files.map(async (file) => ({ name: file.name, bytes: await bytesOf(file) })),
+  );
   const onServer = app.storage.kind === "server";
   const prepare = onServer ? prepareOnServer((options) => askWay(told, options)) : null;
   const dropped = await readDropped(named, prepare);

@@ -41,7 +41,9 @@ export function stepsOf(plan, questionnaires, order) {
   const asked = (...when) =>
     questionnaires
       .filter((one) => one.after.some((after) => when.includes(after)))
-      .map((one) => step("questionnaire", `${when[0]} ${one.id}`, { after: when[0], name: one.id }));
+      .map((one) =>
+        step("questionnaire", `${when[0]} ${one.id}`, { after: when[0], name: one.id }),
+      );
   const practice = Array.from({ length: plan.practice }, (_, index) =>
     step("practice", String(index + 1), { name: String(index + 1) }),
   );
@@ -140,5 +142,11 @@ function lastPractice(steps) {
  * @returns {Place}
  */
 export function placeOf(steps, id, stopped) {
-  return { at: Math.max(0, steps.findIndex((one) => one.id === id)), stopped };
+  return {
+    at: Math.max(
+      0,
+      steps.findIndex((one) => one.id === id),
+    ),
+    stopped,
+  };
 }

@@ -96,7 +96,7 @@ function keptLearned(storage, road) {
  */
 async function series(app, back, inputs, learned) {
   try {
-    for (let next = true; next; ) {
+    for (let next = true; next;) {
       const before = await learned.read();
       const setup = freeSetup(app, inputs, before);
       const { result } = await drive(app, {

@@ -5,7 +5,13 @@ import { readProfile } from "../engine/profile.js";
 import { moved, placeOf, stepsOf } from "./flow.js";
 import { choose, now, showPage } from "./app.js";
 import { element } from "../dom.js";
-import { keepRecord, learnedFiles, otherWithNumber, publishProfiles, readRecord } from "./keeping.js";
+import {
+  keepRecord,
+  learnedFiles,
+  otherWithNumber,
+  publishProfiles,
+  readRecord,
+} from "./keeping.js";
 import { newRecord, noted } from "./record.js";
 import { patiently } from "./patiently.js";
 import { reasonText } from "./pause_dialog.js";

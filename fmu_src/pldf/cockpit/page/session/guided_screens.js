@@ -129,7 +129,8 @@ function clock(left_s) {
 async function thanks(session) {
   const { app } = session;
   const zip =
-    app.storage.kind !== "server" && button(say("hand_out"), () => void handOut(app.storage, app.bundle.beside));
+    app.storage.kind !== "server" &&
+    button(say("hand_out"), () => void handOut(app.storage, app.bundle.beside));
   const away = button(say("home"), () => location.assign(location.pathname));
   const panel = element("div", {});
   const see = button(say("see_learned"), () => {

@@ -87,7 +87,11 @@ function languages(app) {
     made.setAttribute("aria-pressed", String(key === language()));
     return made;
   });
-  return element("div", { class: "languages", role: "group", "aria-label": say("language") }, ...offered);
+  return element(
+    "div",
+    { class: "languages", role: "group", "aria-label": say("language") },
+    ...offered,
+  );
 }
 
 /** @param {App} app */

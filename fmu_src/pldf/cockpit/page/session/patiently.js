@@ -33,10 +33,15 @@ export async function patiently(app, work) {
  */
 async function asked(app, work, problem) {
   const heading = say("not_stored", { problem: toldBy(problem) });
-  const choice = await choose(app, heading, [element("p", {}, say("not_stored_way_out"))], [
-    { text: say("try_again"), choice: "again", kind: "main" },
-    { text: say("hand_out"), choice: "zip" },
-  ]);
+  const choice = await choose(
+    app,
+    heading,
+    [element("p", {}, say("not_stored_way_out"))],
+    [
+      { text: say("try_again"), choice: "again", kind: "main" },
+      { text: say("hand_out"), choice: "zip" },
+    ],
+  );
   if (choice === "zip") {
     const memory = memoryStorage();
     await work(memory);

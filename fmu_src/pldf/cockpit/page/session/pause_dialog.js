@@ -102,12 +102,7 @@ export class PauseDialog {
         this.stop(REASONS[name]);
       }),
     );
-    return element(
-      "div",
-      { class: "reasons" },
-      element("p", {}, sayPage("why_stop")),
-      ...asked,
-    );
+    return element("div", { class: "reasons" }, element("p", {}, sayPage("why_stop")), ...asked);
   }
 
   /** Go on, if the device is there again. */

@@ -207,7 +207,9 @@ class Form {
     }
     const wrong = this.fields.get(first)?.field;
     wrong?.scrollIntoView({ block: "center" });
-    /** @type {HTMLElement | null | undefined} */ (wrong?.querySelector("input, textarea"))?.focus();
+    /** @type {HTMLElement | null | undefined} */ (
+      wrong?.querySelector("input, textarea")
+    )?.focus();
     return null;
   }
 }

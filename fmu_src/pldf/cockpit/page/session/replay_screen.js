@@ -113,14 +113,29 @@ class ReplayScreen {
       this.time_s = Number(this.slider?.value);
     });
     this.play = button(say("stop"), () => this.toggle());
-    return element("div", { class: "replay-bar" }, this.play, this.slider, rate, this.chooser(), ...this.more, back);
+    return element(
+      "div",
+      { class: "replay-bar" },
+      this.play,
+      this.slider,
+      rate,
+      this.chooser(),
+      ...this.more,
+      back,
+    );
   }
 
   /** Which of several recordings is watched. */
   chooser() {
-    const options = this.watched.map(({ name }, index) => element("option", { value: index }, name));
+    const options = this.watched.map(({ name }, index) =>
+      element("option", { value: index }, name),
+    );
     const select = /** @type {HTMLSelectElement} */ (
-      element("select", { "aria-label": say("follow"), hidden: this.watched.length < 2 }, ...options)
+      element(
+        "select",
+        { "aria-label": say("follow"), hidden: this.watched.length < 2 },
+        ...options,
+      )
     );
     select.addEventListener("change", () => this.change(Number(select.value)));
     return select;

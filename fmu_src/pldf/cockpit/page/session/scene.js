@@ -80,7 +80,12 @@ export class Scene {
  */
 function viewOf(canvas, road, settings) {
   const { fov_deg, camera, mirror } = settings;
-  return new View(canvas, road, { fov_deg, camera, mirror, reducedMotion: reducedMotion(settings) });
+  return new View(canvas, road, {
+    fov_deg,
+    camera,
+    mirror,
+    reducedMotion: reducedMotion(settings),
+  });
 }
 
 /**

@@ -85,7 +85,13 @@ export function settingsForm(settings, { study, driving = false, changed = () =>
 function fieldOfView(settings, kept) {
   const { low, high } = FOV_DEG;
   const input = /** @type {HTMLInputElement} */ (
-    element("input", { type: "number", name: "fov_deg", min: low, max: high, value: settings.fov_deg })
+    element("input", {
+      type: "number",
+      name: "fov_deg",
+      min: low,
+      max: high,
+      value: settings.fov_deg,
+    })
   );
   input.addEventListener("change", () => {
     settings.fov_deg = Math.max(low, Math.min(Number(input.value) || settings.fov_deg, high));

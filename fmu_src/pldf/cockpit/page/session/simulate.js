@@ -70,7 +70,11 @@ async function drivenAll(app) {
   /** @type {Files} */
   let profiles = {};
   const phases = app.bundle.plan.orders.AB;
-  const bar = element("progress", { max: phases.length, value: 0, "aria-label": say("simulation") });
+  const bar = element("progress", {
+    max: phases.length,
+    value: 0,
+    "aria-label": say("simulation"),
+  });
   showPage(app, say("simulation"), bar);
   for (const phase of phases) {
     const drive = /** @type {PlannedDrive} */ (

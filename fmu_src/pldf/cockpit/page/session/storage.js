@@ -25,7 +25,9 @@ export function serverStorage(base) {
   const address = (path) => `${base}${path.split("/").map(encodeURIComponent).join("/")}`;
   /** @type {Storage["list"]} */
   const list = async (prefix) => {
-    const response = await fetch(`${base}?prefix=${encodeURIComponent(prefix)}`, { cache: "no-store" });
+    const response = await fetch(`${base}?prefix=${encodeURIComponent(prefix)}`, {
+      cache: "no-store",
+    });
     return (await (await accepted(response)).json()).sort();
   };
   return {
@@ -65,7 +67,11 @@ async function updated(url, change) {
     if (!bytes) {
       return;
     }
-    const response = await put(url, bytes, old.tag ? { "If-Match": old.tag } : { "If-None-Match": "*" });
+    const response = await put(
+      url,
+      bytes,
+      old.tag ? { "If-Match": old.tag } : { "If-None-Match": "*" },
+    );
     if (response.status !== 412) {
       await accepted(response);
       return;
@@ -106,7 +112,8 @@ export async function browserStorage() {
   // Else a browser that is short of space may clear it; where it asks, the person decides.
   void navigator.storage?.persist?.();
   /** @param {IDBTransactionMode} mode */
-  const files = (mode) => base.transaction(FILES, mode, { durability: "strict" }).objectStore(FILES);
+  const files = (mode) =>
+    base.transaction(FILES, mode, { durability: "strict" }).objectStore(FILES);
   /** @type {Storage["read"]} */
   const read = async (path) => (await settled(files("readonly").get(path))) ?? null;
   /** @type {Storage["write"]} */
@@ -123,7 +130,10 @@ export async function browserStorage() {
     write,
     list: async (prefix) => {
       const keys = await settled(files("readonly").getAllKeys());
-      return keys.map(String).filter((path) => path.startsWith(prefix)).sort();
+      return keys
+        .map(String)
+        .filter((path) => path.startsWith(prefix))
+        .sort();
     },
     update: locked(read, write),
   };

@@ -90,7 +90,13 @@ export function sessionSummary(records) {
  * @returns {string | null}
  */
 export function exclusionsTable(records, plan, old) {
-  const lines = old === null ? [] : old.replace(/^\ufeff/, "").trimEnd().split(/\r?\n/);
+  const lines =
+    old === null
+      ? []
+      : old
+          .replace(/^\ufeff/, "")
+          .trimEnd()
+          .split(/\r?\n/);
   if (lines.length && lines[0] !== EXCLUSIONS) {
     return null; // somebody's own columns: not for a program to add to
   }
@@ -99,7 +105,9 @@ export function exclusionsTable(records, plan, old) {
   const told = new Set(kept.map((line) => line.split(",").slice(0, 2).join(",")));
   const ours = rows.filter(([who, phase]) => !told.has(`${who},${phase}`));
   const table = [EXCLUSIONS, ...kept, ...ours.map((row) => row.map(cell).join(","))].join("\n");
-  return table === lines.join("\n") || (table === EXCLUSIONS && !lines.length) ? null : `${table}\n`;
+  return table === lines.join("\n") || (table === EXCLUSIONS && !lines.length)
+    ? null
+    : `${table}\n`;
 }
 
 /**

@@ -57,7 +57,9 @@ export class World {
     for (const [key, built] of this.built) if (!keys.has(key)) this.#drop(key, built);
     const missing = wanted.filter(({ key, detail }) => this.built.get(key)?.detail !== detail);
     let late = false;
-    for (const { key, detail, distance_m, build } of missing.sort((a, b) => a.distance_m - b.distance_m)) {
+    for (const { key, detail, distance_m, build } of missing.sort(
+      (a, b) => a.distance_m - b.distance_m,
+    )) {
       const there = this.built.get(key);
       const waits = there !== undefined || distance_m > AT_ONCE_M;
       if (waits && performance.now() > until_ms) {

@@ -55,7 +55,8 @@ export class Inputs {
    */
   pause(keys, device) {
     const now = device?.pause_learning ?? false;
-    const flips = Number(keys.pause_learning !== this.keyboardPause) + Number(now !== this.devicePause);
+    const flips =
+      Number(keys.pause_learning !== this.keyboardPause) + Number(now !== this.devicePause);
     this.keyboardPause = keys.pause_learning;
     this.devicePause = now;
     this.pause_learning = flips === 1 ? !this.pause_learning : this.pause_learning;
