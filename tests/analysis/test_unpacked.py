@@ -70,6 +70,19 @@ def test_zip_files_of_several_people_are_analysed_together(
     assert answers.count("but soft") == 6
 
 
+def test_what_a_machine_hands_out_again_counts_once(tmp_path: Path) -> None:
+    first, second = handed_out(tmp_path, 1), handed_out(tmp_path, 2)
+    both = {**first, **second}
+    _, _, rows = second["answers.csv"].partition(b"\n")
+    both["answers.csv"] = first["answers.csv"] + rows
+    sessions = [json.loads(one["session.json"])["sessions"][0] for one in (first, second)]
+    both["session.json"] = json.dumps({"format": 1, "sessions": sessions}).encode()
+    days = [zipped(tmp_path / "monday.zip", first), zipped(tmp_path / "tuesday.zip", both)]
+    folder = unpacked_study(days)
+    assert (folder / "answers.csv").read_bytes() == both["answers.csv"]
+    assert json.loads((folder / "session.json").read_bytes())["sessions"] == sessions
+
+
 def test_one_file_goes_into_a_folder_of_its_name_and_may_come_again(tmp_path: Path) -> None:
     files = handed_out(tmp_path, 7)
     path = zipped(tmp_path / "cockpit-P07.zip", files)

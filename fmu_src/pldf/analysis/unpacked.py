@@ -20,6 +20,7 @@ SESSIONS: Final = "session.json"
 _TABLES: Final = ("answers.csv", "exclusions.csv", "questionnaire.csv")
 _TOGETHER: Final = "unpacked"  # the folder of several
 _NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9_./-]*")
+_ROW: Final = re.compile(rb'(?:[^"\n]|"[^"]*")+\n?')  # of CSV: a line, with those in quotes
 _WHOLE_MAX: Final = 4_000_000_000  # bytes, unpacked
 
 
@@ -104,15 +105,19 @@ def _join_of(name: str) -> Callable[[bytes, bytes], bytes] | None:
 
 
 def _joined_tables(first: bytes, second: bytes) -> bytes:
-    """Return the rows of two tables that have the same columns."""
-    header, _, _ = first.partition(b"\n")
-    other, _, rows = second.partition(b"\n")
-    if header != other:
+    """Return the rows of two tables that have the same columns, those that are the same once.
+
+    A machine hands out all that it has: what it handed out the day before, too.
+    """
+    header, *before = _ROW.findall(first)
+    other, *rows = _ROW.findall(second)
+    if header.strip() != other.strip():
         raise ValueError("has other columns than in the files before; analyse them apart")
-    return first.rstrip(b"\n") + b"\n" + rows
+    known = {row.strip() for row in before}
+    return first.rstrip(b"\n") + b"\n" + b"".join(row for row in rows if row.strip() not in known)
 
 
 def _joined_sessions(first: bytes, second: bytes) -> bytes:
     whole, more = json.loads(first), json.loads(second)
-    whole["sessions"] += more["sessions"]
+    whole["sessions"] += [one for one in more["sessions"] if one not in whole["sessions"]]
     return json.dumps(whole).encode()
