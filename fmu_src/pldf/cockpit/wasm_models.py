@@ -105,15 +105,16 @@ def _is_up_to_date(model: WasmModel) -> bool:
 def _compile(folder: Path, announce: Callable[[str], None]) -> dict[str, WasmModel]:
     from ..build import fmus
 
-    for number, name in enumerate(fmus.FMUS, start=1):
-        announce(f"[{number}/{len(fmus.FMUS)}] {name} as WebAssembly, which is kept")
-        try:
+    try:
+        fmus.require_extra("WebAssembly needs")
+        for number, name in enumerate(fmus.FMUS, start=1):
+            announce(f"[{number}/{len(fmus.FMUS)}] {name} as WebAssembly, which is kept")
             fmus.build_wasm(name, folder, lambda _: None)
-        except ValueError as problem:
-            raise ModelError(
-                f"the cockpit has no FMUs for its page: {problem} (a wheel brings them along, "
-                "but these sources have changed since)"
-            ) from None
+    except ValueError as problem:
+        raise ModelError(
+            f"the cockpit has no FMUs for its page: {problem} (a wheel brings them along, but "
+            "these sources have changed since)"
+        ) from None
     made = _read(folder / WASM_FOLDER)
     assert made is not None
     return made
