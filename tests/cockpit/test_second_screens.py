@@ -139,6 +139,7 @@ def test_the_experimenter_sees_who_is_where(
     assert shown(window, "The car says") == "66 for the curve"
     assert shown(window, "Learned") == "11 places"
     assert shown(window, "Stored drives") == "A1"
+    assert shown(window, "Condition") == "order BA, cluster: icon and text"
     heading = "return document.querySelector('.desk-card header').textContent"
     assert "4 of 14: Drive A2" in window.execute_script(heading)
     tell(address, status("P01"))  # it drives on, and its frames do not come

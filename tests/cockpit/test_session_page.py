@@ -110,6 +110,7 @@ def test_a_reload_and_a_stop_lose_nothing(address: str, window: Chrome, folder: 
     press(window, "I feel unwell")
     at(window, "The drive ended early")
     wait(window, "document.body.innerText.includes('Reason: I feel unwell')")
+    assert wait(window, "document.querySelector('button.main').innerText") == "End the session"
     press(window, "End the session")
     at(window, "The session was stopped")
     window.refresh()

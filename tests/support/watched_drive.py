@@ -60,6 +60,7 @@ def status(participant: str = "P07", **others: Any) -> dict[str, Any]:
     """Return the message of where a person is."""
     return {
         "kind": "status", "participant": participant, "phase": "A2", "place": "Drive A2",
-        "position": 4, "of": 14, "state": "driving", "reason": "", "explanation": "text",
-        "unit": "KMH", "language": "en", "learned_places": 11, "end_m": 4500.0,
+        "position": 4, "of": 14, "state": "driving", "reason": "",
+        "order": "BA", "explanation": "text", "unit": "KMH", "language": "en",
+        "learned_places": 11, "end_m": 4500.0,
     } | others  # fmt: skip

@@ -34,6 +34,11 @@ const words = wording({
     stored: "Stored drives",
     nothing: "none yet",
     reason: "Reason",
+    condition: "Condition",
+    conditioned: "order {order}, cluster: {explained}",
+    explained_none: "no explanations",
+    explained_icon: "icon",
+    explained_text: "icon and text",
     cluster: "Instrument cluster in its own window",
   },
   de: {
@@ -56,9 +61,24 @@ const words = wording({
     stored: "Gespeicherte Fahrten",
     nothing: "noch keine",
     reason: "Grund",
+    condition: "Bedingung",
+    conditioned: "Reihenfolge {order}, Anzeige: {explained}",
+    explained_none: "keine Erklärungen",
+    explained_icon: "Symbol",
+    explained_text: "Symbol und Text",
     cluster: "Kombiinstrument in eigenem Fenster",
   },
 });
+
+const FACTS = /** @type {const} */ ([
+  "condition",
+  "speed",
+  "why",
+  "did",
+  "learned",
+  "stored",
+  "reason",
+]);
 
 /** Follows one participant. */
 export class DeskCard {
@@ -72,12 +92,7 @@ export class DeskCard {
     const { participant } = watched;
     this.state = element("span", { class: "desk-state", role: "status" });
     this.place = element("p", { class: "desk-place" });
-    this.facts = Object.fromEntries(
-      ["speed", "why", "did", "learned", "stored", "reason"].map((name) => [
-        name,
-        element("dd", {}),
-      ]),
-    );
+    this.facts = Object.fromEntries(FACTS.map((name) => [name, element("dd", {})]));
     const plot = element("div", { class: "after-plot" });
     this.form = new AbortForm(desk.abort);
     this.root = element(
@@ -111,8 +126,7 @@ export class DeskCard {
   }
 
   listed() {
-    const names = /** @type {const} */ (["speed", "why", "did", "learned", "stored", "reason"]);
-    return names.map((name) =>
+    return FACTS.map((name) =>
       element("div", {}, element("dt", {}, words(name)), this.facts[name]),
     );
   }
@@ -141,6 +155,7 @@ export class DeskCard {
       count === undefined ? "–" : count === 1 ? words("place") : words("places", { count }),
     );
     this.tell("reason", status?.reason || "–");
+    this.tell("condition", status ? conditionOf(status) : "–");
     this.form.enable(state === "driving" || state === "paused");
     this.draw(interventions);
   }
@@ -194,4 +209,9 @@ export class DeskCard {
     this.plot?.dispose();
     return new SpeedPlot(this.plotted, unit, "profile");
   }
+}
+
+/** @param {import("./live.js").StatusMessage} status @returns {string} */
+function conditionOf({ order, explanation }) {
+  return words("conditioned", { order, explained: words(`explained_${explanation}`) });
 }

@@ -26,6 +26,7 @@
  * @property {number} of how many there are
  * @property {"driving" | "paused" | "between" | "ended"} state
  * @property {string} reason of a pause or an end, or empty
+ * @property {"AB" | "BA"} order of the two systems
  * @property {Explanation} explanation
  * @property {Unit} unit
  * @property {Language} language

@@ -226,6 +226,7 @@ export class Session {
       of: this.steps.length,
       state,
       reason: record.stopped?.reason ?? "",
+      order: record.order,
       explanation: record.explanation,
       unit: app.settings.unit === "mph" ? "MPH" : "KMH",
       language: language(),

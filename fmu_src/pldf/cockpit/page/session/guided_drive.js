@@ -12,7 +12,7 @@ import { keepDrive, learnedFiles } from "./keeping.js";
 import { keysTable } from "./keys_table.js";
 import { language } from "../language.js";
 import { patiently } from "./patiently.js";
-import { reasonText } from "./pause_dialog.js";
+import { REASONS, reasonText } from "./pause_dialog.js";
 import { progress } from "./progress.js";
 import { driveSetup, planned, practiceSetup } from "./setup.js";
 import { shownBy } from "./settings.js";
@@ -229,9 +229,11 @@ async function endedEarly({ app }, reason) {
     element("p", {}, say("ended_early_why", { reason: reasonText(reason) })),
     element("p", {}, say("unwell")),
   ];
-  const event = await choose(app, say("ended_early"), content, [
-    { text: say("drive_again"), choice: /** @type {const} */ ("again"), kind: "main" },
-    { text: say("end_session"), choice: /** @type {const} */ ("stop") },
-  ]);
+  // Nobody who feels unwell is asked to drive again by the larger button.
+  const unwell = reason === REASONS.unwell;
+  const again = { text: say("drive_again"), choice: /** @type {const} */ ("again") };
+  const stop = { text: say("end_session"), choice: /** @type {const} */ ("stop") };
+  const choices = unwell ? [{ ...stop, kind: "main" }, again] : [{ ...again, kind: "main" }, stop];
+  const event = await choose(app, say("ended_early"), content, choices);
   return { event, reason: event === "stop" ? reason : "" };
 }

@@ -10,7 +10,7 @@ import { say as sayPage } from "./words.js";
 /** @typedef {import("./app.js").App} App */
 
 // What is written into the data, whatever language is spoken.
-const REASONS = /** @type {const} */ ({
+export const REASONS = /** @type {const} */ ({
   unwell: "felt unwell",
   time: "no more time",
   broken: "something did not work",
