@@ -130,11 +130,20 @@ def test_what_cannot_be_put_together_is_refused(tmp_path: Path, text: str) -> No
         one_script(tmp_path, "root.js")
 
 
-def test_the_policy_comes_before_what_it_is_for(page: Path) -> None:
-    text = exported_page(b"{}", b"", page)
+@pytest.mark.parametrize("own", [True, False], ids=["small", "cockpit"])
+def test_the_policy_comes_before_what_it_is_for(page: Path, own: bool) -> None:
+    text = exported_page(b"{}", b"", page if own else PAGE)
     assert text.index("Content-Security-Policy") < min(map(text.index, ("<style", "<script")))
     assert "unsafe-inline" not in text
-    assert not re.search(r'(?:href|src)="(?!data:)', text)
+    outside = re.sub(r"(<style|<script).*?(</style>|</script>)", "", text, flags=re.DOTALL)
+    assert not re.search(r'(?:href|src)="(?!data:)', outside)
+
+
+def test_a_page_without_what_is_replaced_is_refused(page: Path) -> None:
+    index = page / "index.html"
+    index.write_text(INDEX.replace("utf-8", "latin-1"), encoding="utf-8")
+    with pytest.raises(ValueError, match="charset"):
+        exported_page(b"{}", b"", page)
 
 
 def test_the_licences_of_all_that_is_inside_are_inside() -> None:

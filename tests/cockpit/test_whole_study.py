@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 
 import pytest
 from chrome import chrome, console, wait
+from guided_page import at, press, start
 from pldf.cockpit.bundle import bundle
 from pldf.cockpit.desk_study import read_desk_study
 from pldf.cosim.fmu import Fmu
@@ -77,17 +78,6 @@ class Driven(NamedTuple):
     console: list[str]
 
 
-def press(window: Chrome, text: str) -> None:
-    """Press the button with this text as soon as it is there."""
-    found = f"[...document.querySelectorAll('button')].find(one => one.innerText === {text!r})"
-    wait(window, f"!!{found}")
-    window.execute_script(f"{found}.click()")
-
-
-def at(window: Chrome, title: str) -> None:
-    wait(window, f"(document.querySelector('h1')?.textContent ?? '').includes({title!r})")
-
-
 def key(window: Chrome, name: str, held_s: float) -> None:
     ActionChains(window).key_down(name).pause(held_s).key_up(name).perform()
 
@@ -117,8 +107,7 @@ def by_gamepad(window: Chrome, chance: random.Random) -> None:
 def driven(window: Chrome, act: Callable[[Chrome, random.Random], None], seed: int) -> None:
     """Drive to the end of the road."""
     chance = random.Random(seed)
-    press(window, "Start the drive")
-    wait(window, "document.querySelector('.drive-count')?.textContent === ''")
+    start(window)
     end = time.monotonic() + DRIVE_S
     while not window.execute_script(OVER):
         assert time.monotonic() < end, console(window)
@@ -164,7 +153,7 @@ def session(window: Chrome, address: str) -> None:
     at(window, "Drive 2 of 2")
     window.refresh()
     at(window, "Drive 2 of 2")
-    press(window, "How do you drive?")
+    press(window, "Another device")
     use(window, 0)
     driven(window, by_gamepad, seed=2)
     answer_all(window)

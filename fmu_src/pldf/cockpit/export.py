@@ -6,6 +6,7 @@ import base64
 import hashlib
 import json
 import re
+from collections.abc import Callable
 from html import escape
 from pathlib import Path
 from typing import Final
@@ -20,8 +21,8 @@ MAIN: Final = "main.js"
 WORKER: Final = "engine/worker.js"
 _LICENCE: Final = ".LICENSE.txt"
 _STYLE: Final = re.compile(r'<link rel="stylesheet" href="([^"]+)"\s*/?>\n?')
-_CHARSET: Final = '<meta charset="utf-8">'  # what follows it obeys the policy
-_ICON: Final = re.compile(r'(?<=<link rel="icon" href=")([^"]+)(?=">)')
+_CHARSET: Final = re.compile(r'<meta charset="utf-8"\s*/?>\n')  # what follows it obeys the policy
+_ICON: Final = re.compile(r'(?<=<link rel="icon" href=")([^"]+)')
 _SCRIPT: Final = re.compile(r'<script type="module" src="([^"]+)"></script>')
 
 
@@ -60,9 +61,17 @@ def exported_page(bundle: bytes, licences: bytes = b"", page: Path = PAGE) -> st
     texts = [licences, *(file.read_bytes() for file in sorted(page.glob(f"vendor/*{_LICENCE}")))]
     shown = "\n".join(escape(text.decode()) for text in texts)
     data += f'\n<template id="licences"><pre>{shown}</pre></template>'
-    text = _STYLE.sub("", text).replace(_CHARSET, f"{_CHARSET}\n{head}", 1)
-    text = _ICON.sub(lambda m: _as_address((page / m[1]).read_bytes(), "image/svg+xml"), text)
-    return _SCRIPT.sub(lambda _: f'{data}\n<script type="module">{script}</script>', text)
+    text = _once(_CHARSET, lambda m: f"{m[0]}{head}", _STYLE.sub("", text))
+    text = _once(_ICON, lambda m: _as_address((page / m[1]).read_bytes(), "image/svg+xml"), text)
+    return _once(_SCRIPT, lambda _: f'{data}\n<script type="module">{script}</script>', text)
+
+
+def _once(what: re.Pattern[str], put: Callable[[re.Match[str]], str], text: str) -> str:
+    """Put something in place of ``what``, without which the page would lack policy or script."""
+    changed, count = what.subn(put, text)
+    if count != 1:
+        raise ValueError(f"index.html: {what.pattern} stands there {count} times, not once")
+    return changed
 
 
 def _as_address(data: bytes, kind: str) -> str:
