@@ -12,6 +12,7 @@ import { FrameTimes } from "./frame_times.js";
 import { Pedals } from "./pedals.js";
 import { PauseDialog } from "./pause_dialog.js";
 import { Scene } from "./scene.js";
+import { unitOf } from "./settings.js";
 import { say } from "./drive_words.js";
 
 /** @typedef {import("../types.js").DriveResult} DriveResult */
@@ -88,7 +89,7 @@ class DriveScreen {
     this.root = element("div", { class: "drive", tabindex: -1 }, ...shown);
     fill(app.root, this.root);
     this.scene = new Scene(this.canvas, app.road, app.settings);
-    const unit = app.settings.unit === "mph" ? "MPH" : "KMH";
+    const unit = unitOf(app.settings);
     this.cluster = new Cluster(cluster, app.bundle.texts, {
       explanation: options.explanation,
       unit,

@@ -10,8 +10,9 @@ import { button, buttons, showPage, showProblem } from "./app.js";
 import { calibrationOf, inputsOf } from "./devices.js";
 import { drive } from "./drive_screen.js";
 import { reasonText } from "./pause_dialog.js";
-import { driveSetup } from "./setup.js";
-import { browserStorage, memoryStorage } from "./storage.js";
+import { unitOf } from "./settings.js";
+import { driveSetup, simulatedSetup } from "./setup.js";
+import { browserStorage, filesIn, memoryStorage } from "./storage.js";
 import { say } from "./words.js";
 
 /** @typedef {import("../types.js").DriveResult} DriveResult */
@@ -23,7 +24,6 @@ import { say } from "./words.js";
 /** @typedef {{read: () => Promise<Files>, write: (files: Files) => Promise<void>}} Learned write: these and no others */
 
 const DRIVER_ID = 1;
-const SIMULATED = "simulated driver";
 
 /**
  * Drive, see what was learned, drive again.
@@ -68,12 +68,8 @@ function keptLearned(storage, road) {
   const folder = `free/${road}/`;
   return {
     read: async () => {
-      /** @type {Files} */
-      const files = {};
-      for (const path of await storage.list(folder)) {
-        files[path.slice(folder.length)] = (await storage.read(path)) ?? new Uint8Array();
-      }
-      return Object.fromEntries(Object.entries(files).filter(([, bytes]) => bytes.length));
+      const files = Object.entries(await filesIn(storage, folder));
+      return Object.fromEntries(files.filter(([, bytes]) => bytes.length));
     },
     write: async (files) => {
       for (const path of await storage.list(folder)) {
@@ -132,14 +128,10 @@ function freeSetup(app, inputs, profiles) {
   if (!drive) {
     throw new Error("the plan has no drives");
   }
-  const setup = driveSetup(app.bundle, drive, {
-    driver_id: DRIVER_ID,
-    profiles,
-    device: inputs?.name ?? SIMULATED,
-    settings: app.settings,
-    language: language(),
-  });
-  return inputs ? setup : { ...setup, who: "model", activate: false, steering: "assisted" };
+  const who = { driver_id: DRIVER_ID, profiles, settings: app.settings, language: language() };
+  return inputs
+    ? driveSetup(app.bundle, drive, { ...who, device: inputs.name })
+    : simulatedSetup(app.bundle, drive, who);
 }
 
 /**
@@ -196,7 +188,7 @@ function afterDrive(app, panel, setup, result, learned) {
     frames: readReplay(result.recording).frames,
     before: name ? (setup.profiles[name] ?? null) : null,
     after: name ? (result.profiles[name] ?? null) : null,
-    unit: app.settings.unit === "mph" ? "MPH" : "KMH",
+    unit: unitOf(app.settings),
     messages: result.messages,
     forget: name ? (places_m) => forgotten(app, setup, result, learned, name, places_m) : null,
   });

@@ -15,7 +15,7 @@ import {
 import { newRecord, noted } from "./record.js";
 import { patiently } from "./patiently.js";
 import { reasonText } from "./pause_dialog.js";
-import { readSettings } from "./settings.js";
+import { readSettings, unitOf } from "./settings.js";
 import { screenOf } from "./guided_screens.js";
 import { language } from "../language.js";
 import { say } from "./words.js";
@@ -228,7 +228,7 @@ export class Session {
       reason: record.stopped?.reason ?? "",
       order: record.order,
       explanation: record.explanation,
-      unit: app.settings.unit === "mph" ? "MPH" : "KMH",
+      unit: unitOf(app.settings),
       language: language(),
       learned_places: this.learned,
       end_m: app.bundle.plan.end_m,

@@ -2,25 +2,10 @@
 
 import { zipSync } from "../vendor/fflate.js";
 import { element } from "../dom.js";
+import { filesIn } from "./storage.js";
 
 /** @typedef {import("./storage.js").Storage} Storage */
 /** @typedef {import("../types.js").Files} Files */
-
-/**
- * @param {Storage} storage
- * @returns {Promise<Files>} all files
- */
-export async function allFiles(storage) {
-  /** @type {Files} */
-  const files = {};
-  for (const path of await storage.list("")) {
-    const bytes = await storage.read(path);
-    if (bytes) {
-      files[path] = bytes;
-    }
-  }
-  return files;
-}
 
 /**
  * Return files as a zip; the same files give the same bytes.
@@ -51,7 +36,7 @@ export function saveAs(name, bytes) {
  * @returns {Promise<number>} how many files there were
  */
 export async function handOut(storage, beside = {}) {
-  const files = await allFiles(storage);
+  const files = await filesIn(storage, "");
   const count = Object.keys(files).length;
   if (count) {
     saveAs("pldf-cockpit.zip", zipped({ ...beside, ...files }));

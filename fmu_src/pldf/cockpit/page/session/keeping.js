@@ -3,6 +3,7 @@
 import { inputsCsv } from "../engine/input_changes.js";
 import { answersTable, exclusionsTable, questionnaireTable, sessionSummary } from "./tables.js";
 import { jsonBytes, parseRecord } from "./record.js";
+import { filesIn } from "./storage.js";
 
 /** @typedef {import("../types.js").Bundle} Bundle */
 /** @typedef {import("../types.js").DriveResult} DriveResult */
@@ -152,16 +153,7 @@ export async function learnedFiles(storage, record) {
   if (!record.learned_after) {
     return {};
   }
-  const folder = learnedFolder(record.participant, record.learned_after);
-  /** @type {Files} */
-  const files = {};
-  for (const path of await storage.list(folder)) {
-    const bytes = await storage.read(path);
-    if (bytes) {
-      files[path.slice(folder.length)] = bytes;
-    }
-  }
-  return files;
+  return filesIn(storage, learnedFolder(record.participant, record.learned_after));
 }
 
 /**

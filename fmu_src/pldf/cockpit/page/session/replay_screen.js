@@ -8,6 +8,7 @@ import { comparePlot } from "./compare_plot.js";
 import { ByDistance } from "./comparing.js";
 import { Pedals } from "./pedals.js";
 import { Scene } from "./scene.js";
+import { unitOf } from "./settings.js";
 import { say } from "./replay_words.js";
 
 /** @typedef {import("../types.js").Frame} Frame */
@@ -50,7 +51,7 @@ class ReplayScreen {
     this.watched = watched;
     this.profiles = profiles;
     /** @type {Unit} */
-    this.unit = app.settings.unit === "mph" ? "MPH" : "KMH";
+    this.unit = unitOf(app.settings);
     this.more = more;
     this.playing = false;
     this.rate = 1;

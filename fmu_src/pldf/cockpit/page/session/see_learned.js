@@ -5,6 +5,7 @@ import { readReplay } from "../engine/replay.js";
 import { element } from "../dom.js";
 import { learnedFiles } from "./keeping.js";
 import { drivesOf } from "./record.js";
+import { unitOf } from "./settings.js";
 
 /** @typedef {import("./app.js").App} App */
 /** @typedef {import("./record.js").SessionRecord} SessionRecord */
@@ -29,7 +30,7 @@ export async function learnedPanel(app, record) {
     frames: readReplay(recording).frames,
     before: await profileOf(app, before),
     after: await profileOf(app, record),
-    unit: app.settings.unit === "mph" ? "MPH" : "KMH",
+    unit: unitOf(app.settings),
     messages: drive.messages,
     forget: null, // in a study, the drives are what is learned
   });

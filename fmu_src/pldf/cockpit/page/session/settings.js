@@ -46,6 +46,15 @@ export function readSettings(plan, whose = "") {
 }
 
 /**
+ * Return the unit of speeds as the cluster and the function's messages name it.
+ * @param {Pick<Settings, "unit">} settings
+ * @returns {"KMH" | "MPH"}
+ */
+export function unitOf({ unit }) {
+  return unit === "mph" ? "MPH" : "KMH";
+}
+
+/**
  * Return `settings` with what cannot be replaced by what it was `first`.
  * @param {Settings} settings
  * @param {Settings} first

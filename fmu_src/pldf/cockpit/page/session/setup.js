@@ -51,6 +51,18 @@ export function driveSetup(bundle, drive, who) {
 }
 
 /**
+ * Return a drive of the plan that the driver FMU drives.
+ * @param {Bundle} bundle
+ * @param {PlannedDrive} drive
+ * @param {Omit<Parameters<typeof driveSetup>[2], "device">} whose
+ * @returns {DriveSetup}
+ */
+export function simulatedSetup(bundle, drive, whose) {
+  const setup = driveSetup(bundle, drive, { ...whose, device: "simulated driver" });
+  return { ...setup, who: "model", activate: false, steering: "assisted" };
+}
+
+/**
  * Return a practice drive: the first drive of the plan, shorter, of which nothing is learned.
  * @param {Bundle} bundle
  * @param {Parameters<typeof driveSetup>[2]} who

@@ -8,7 +8,7 @@ import { language } from "../language.js";
 import { button, showPage, showProblem } from "./app.js";
 import { saveAs, zipped } from "./hand_out.js";
 import { watch } from "./replay_screen.js";
-import { driveSetup } from "./setup.js";
+import { planned, simulatedSetup } from "./setup.js";
 import { say } from "./words.js";
 
 /** @typedef {import("../types.js").DriveResult} DriveResult */
@@ -77,9 +77,7 @@ async function drivenAll(app) {
   });
   showPage(app, say("simulation"), bar);
   for (const phase of phases) {
-    const drive = /** @type {PlannedDrive} */ (
-      app.bundle.plan.drives.find((one) => one.phase === phase)
-    );
+    const drive = planned(app.bundle, phase);
     const result = await drivenFast(app, simulated(app, drive, profiles));
     if (result.ending === "failed") {
       throw new Error(`${phase}: ${result.reason}`);
@@ -99,14 +97,8 @@ async function drivenAll(app) {
  * @returns {DriveSetup}
  */
 function simulated(app, drive, profiles) {
-  const setup = driveSetup(app.bundle, drive, {
-    driver_id: DRIVER_ID,
-    profiles,
-    device: "simulated driver",
-    settings: app.settings,
-    language: language(),
-  });
-  return { ...setup, who: "model", activate: false, pace: "fast", steering: "assisted" };
+  const who = { driver_id: DRIVER_ID, profiles, settings: app.settings, language: language() };
+  return { ...simulatedSetup(app.bundle, drive, who), pace: "fast" };
 }
 
 /**

@@ -1,5 +1,6 @@
 // Where the files of a session are kept: in one folder on the server's disk, or in the browser.
 
+/** @typedef {import("../types.js").Files} Files */
 /**
  * @typedef {object} Storage
  * @property {"server" | "browser" | "memory"} kind memory: gone when the page is closed
@@ -14,6 +15,24 @@
 const TRIES_MAX = 20;
 const DATABASE = "pldf-cockpit";
 const FILES = "files";
+
+/**
+ * Return the files whose paths begin with `folder`, by what follows it.
+ * @param {Storage} storage
+ * @param {string} folder
+ * @returns {Promise<Files>}
+ */
+export async function filesIn(storage, folder) {
+  /** @type {Files} */
+  const files = {};
+  for (const path of await storage.list(folder)) {
+    const bytes = await storage.read(path);
+    if (bytes) {
+      files[path.slice(folder.length)] = bytes;
+    }
+  }
+  return files;
+}
 
 /**
  * Return the server's folder as storage.
