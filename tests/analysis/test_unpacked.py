@@ -104,6 +104,16 @@ def test_somebody_elses_folder_stays_as_it_is(tmp_path: Path) -> None:
     assert not list((tmp_path / "laboratory").iterdir())
 
 
+def test_people_of_files_that_are_not_named_do_not_count(tmp_path: Path) -> None:
+    paths = [zipped(tmp_path / f"P{n}.zip", handed_out(tmp_path, n)) for n in (1, 2, 3)]
+    folder = unpacked_study(paths[:2])
+    with pytest.raises(ModelError, match=r"unpacked from P1\.zip before.* rename the folder"):
+        unpacked_study(paths[1:])
+    assert not (folder / "recordings" / "P03_A1.csv").exists()
+    assert unpacked_study(paths) == folder
+    assert (folder / "recordings" / "P03_A1.csv").exists()
+
+
 @pytest.mark.parametrize(
     "name", ["../evil.csv", "/etc/evil.csv", "a/../../evil.csv", "a//b.csv", "./a.csv", "C:\\a.csv"]
 )

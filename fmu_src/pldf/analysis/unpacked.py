@@ -28,7 +28,8 @@ def unpacked_study(paths: Sequence[Path]) -> Path:
     """Unpack the files into one folder beside the first, and return the folder.
 
     Of one file it has its name without the ending; several are put together in ``unpacked``. The
-    folder is made anew if it was unpacked before; what else lies in it stays.
+    folder is made anew if it was unpacked from these files before, or from some of them; what else
+    lies in it stays.
 
     Raises:
         ModelError: a file is none that a cockpit handed out, two of them contradict each other, or
@@ -36,10 +37,7 @@ def unpacked_study(paths: Sequence[Path]) -> Path:
     """
     first = paths[0]
     folder = first.with_suffix("") if len(paths) == 1 else first.with_name(_TOGETHER)
-    if folder.exists() and not (folder / MARK).exists():
-        raise ModelError(
-            f"{folder}: is there already and was not unpacked from {first.name}; rename one of them"
-        )
+    _require_own(folder, paths)
     whole: dict[str, bytes] = {}
     for path in paths:
         _add(whole, _content(path), path)
@@ -51,6 +49,25 @@ def unpacked_study(paths: Sequence[Path]) -> Path:
         make_folder(place.parent)
         replace_file(place, data)
     return folder
+
+
+def _require_own(folder: Path, paths: Sequence[Path]) -> None:
+    """Raise ModelError if the folder has anything of others: they would be analysed as well."""
+    if not folder.exists():
+        return
+    mark = folder / MARK
+    if not mark.exists():
+        raise ModelError(
+            f"{folder}: is there already and was not unpacked from {paths[0].name}; rename one of "
+            "them"
+        )
+    names = {path.name for path in paths}
+    others = [name for name in mark.read_text(encoding="utf-8").splitlines() if name not in names]
+    if others:
+        raise ModelError(
+            f"{folder}: was unpacked from {', '.join(others)} before, whose people would count as "
+            "well; name these files, too, or rename the folder"
+        )
 
 
 def _content(path: Path) -> dict[str, bytes]:
