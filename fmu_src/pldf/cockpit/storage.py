@@ -66,6 +66,7 @@ class Folder:
         """Use ``root``, which need not be there yet; it gets the files ``beside`` the data."""
         self.root = root
         self._beside = beside or {}
+        self._left: set[str] = set()  # files beside the data that were compared and written
 
     @property
     def of_another_study(self) -> bool:
@@ -128,10 +129,14 @@ class Folder:
         """Leave study file and road that the data belong to, and those before."""
         for name, data in self._beside.items():
             place = self.root / name
-            if self._is_other(name):
+            if name in self._left and place.exists():
+                continue  # a road is large, and something is written at every step of a session
+            other = self._is_other(name)
+            if other:
                 self._keep_earlier(name, place.read_bytes())
-            if not place.exists() or self._is_other(name):
+            if other or not place.exists():
                 replace_file(place, data)
+            self._left.add(name)
 
     def _place(self, path: str) -> Path:
         if _is_ours(path):
