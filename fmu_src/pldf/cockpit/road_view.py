@@ -143,17 +143,8 @@ def _traffic(leg: Leg) -> str:
 
 def _villages(pieces: Sequence[_Piece]) -> Iterator[dict[str, Any]]:
     """Yield where the file says ``town``; pieces that touch are one village."""
-    last: dict[str, Any] | None = None
-    for piece in pieces:
-        for from_m, to_m in _town_spans(piece):
-            if last is not None and abs(from_m - last["to_m"]) < 1.0:
-                last["to_m"] = to_m
-                continue
-            if last is not None:
-                yield last
-            last = _stretch("village", from_m, to_m, "")
-    if last is not None:
-        yield last
+    spans = (span for piece in pieces for span in _town_spans(piece))
+    return _joined((_stretch("village", *span, "") for span in spans), gap_m=1.0)
 
 
 def _town_spans(piece: _Piece) -> list[tuple[float, float]]:
@@ -179,29 +170,10 @@ def _bridges(pieces: Sequence[_Piece]) -> Iterator[dict[str, Any]]:
 
 def _bends(route: Route) -> Iterator[dict[str, Any]]:
     """Yield to which side a road without a line turns: prepared files have no signs there."""
-    last: _Bend | None = None
-    for bend in () if route.has_line else _bent(route):
-        if last is not None and (last.left, last.to_m) == (bend.left, bend.from_m):
-            last = last._replace(to_m=bend.to_m)
-            continue
-        if last is not None:
-            yield last.stretch()
-        last = bend
-    if last is not None:
-        yield last.stretch()
+    return _joined(() if route.has_line else _bent(route), gap_m=0.0)
 
 
-class _Bend(NamedTuple):
-    left: bool
-    from_m: float
-    to_m: float
-
-    def stretch(self) -> dict[str, Any]:
-        kind = "bend_left" if self.left else "bend_right"
-        return _stretch(kind, self.from_m, self.to_m, "")
-
-
-def _bent(route: Route) -> Iterator[_Bend]:
+def _bent(route: Route) -> Iterator[dict[str, Any]]:
     """Yield what lies between two knots and turns; one side after the other where it changes."""
     s_m, curvature = route.s_m, route.curvature_per_m
     bent = np.abs(curvature) > _STRAIGHT_PER_M
@@ -209,11 +181,30 @@ def _bent(route: Route) -> Iterator[_Bend]:
         before, after = float(curvature[k]), float(curvature[k + 1])
         from_m, to_m = float(s_m[k]), float(s_m[k + 1])
         if before * after >= 0.0:
-            yield _Bend(before + after > 0.0, from_m, to_m)
+            yield _bend(before + after, from_m, to_m)
             continue
         middle_m = from_m + (to_m - from_m) * before / (before - after)
-        yield _Bend(before > 0.0, from_m, middle_m)
-        yield _Bend(after > 0.0, middle_m, to_m)
+        yield _bend(before, from_m, middle_m)
+        yield _bend(after, middle_m, to_m)
+
+
+def _bend(curvature_per_m: float, from_m: float, to_m: float) -> dict[str, Any]:
+    return _stretch("bend_left" if curvature_per_m > 0.0 else "bend_right", from_m, to_m, "")
+
+
+def _joined(stretches: Iterable[dict[str, Any]], gap_m: float) -> Iterator[dict[str, Any]]:
+    """Yield stretches with those of one kind joined that are at most ``gap_m`` apart."""
+    last: dict[str, Any] | None = None
+    for stretch in stretches:
+        if last is None:
+            last = stretch
+        elif last["kind"] == stretch["kind"] and abs(stretch["from_m"] - last["to_m"]) <= gap_m:
+            last["to_m"] = stretch["to_m"]
+        else:
+            yield last
+            last = stretch
+    if last is not None:
+        yield last
 
 
 def _stretch(kind: str, from_m: float, to_m: float, name: str) -> dict[str, Any]:
